@@ -1,0 +1,2 @@
+# install + find_package(coif): one static library a room.
+include(CMakePackageConfigHelpers)

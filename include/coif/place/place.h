@@ -1,0 +1,57 @@
+// Internal vertex placement: the quadratic energy over side quads, by conjugate gradients or directly.
+//
+// Minimises E = Σ over side quads ‖(c − a) − (d − b)‖² over the internal vertices (Yuksel et al. 2009, section 3.3,
+// with the corrections of docs/place.md). Solves in double. Free components (no fixed vertex) are found by
+// union-find; their mean is pinned to the line from root to tip.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "coif/base/report.h"
+#include "coif/base/result.h"
+#include "coif/hairmesh/hair_mesh.h"
+
+namespace coif {
+
+enum class PlaceSolver {
+  Auto,               ///< Tensor where it pays, else Direct
+  ConjugateGradient,  ///< plain
+  Jacobi,             ///< conjugate gradients, diagonal preconditioner
+  IncompleteCholesky, ///< conjugate gradients, incomplete factor
+  Tensor,             ///< conjugate gradients, P (T⊗L)⁻¹ Pᵀ
+  Direct,             ///< sparse LDLᵀ with iterative refinement: the reference
+};
+
+struct PlaceOptions {
+  PlaceSolver solver = PlaceSolver::Auto;
+  double tolerance = 1e-9;   ///< on the estimated error, in units of the mesh's bounding-box diagonal; > 0
+  int maxIterations = 20000; ///< exceeded: a report with converged = false, never an error
+};
+
+struct PlaceReport {
+  PlaceSolver solver = PlaceSolver::Auto;  ///< the one that ran
+  std::size_t unknowns = 0;                ///< internal vertices
+  std::size_t freeComponents = 0;
+  int iterations = 0;
+  bool converged = true;
+  double energyBefore = 0, energyAfter = 0;
+  ErrorEstimate error;                     ///< estimated max distance to the minimiser / bounding-box diagonal
+  double seconds = 0;
+};
+
+/// Moves the internal vertices of `mesh` to the minimiser; external and pinned ones stay bit for bit.
+/// Errors: Degenerate when a position is not finite; Cancelled.
+Result<PlaceReport> place(HairMesh& mesh, const PlaceOptions& options = {}, const Context& context = {});
+
+/// E of the present positions.
+double placementEnergy(const HairMesh& mesh);
+
+/// Drag response: for a set S of external vertices moved together by Δ, every vertex moves by coefficient × Δ
+/// (1 on S, 0 on other external ones). One solve here, one AXPY a mouse-move, exact (the energy is quadratic).
+/// Returns one coefficient a vertex.
+Result<std::vector<double>> dragResponse(const HairMesh& mesh, std::span<const std::uint32_t> selection,
+                                         const PlaceOptions& options = {}, const Context& context = {});
+
+}  // namespace coif

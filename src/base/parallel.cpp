@@ -1,0 +1,41 @@
+#include "coif/base/parallel.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace coif {
+
+void parallelFor(const Context& context, std::size_t count, std::size_t grain,
+                 const std::function<void(std::size_t, std::size_t)>& body) {
+  if (count == 0) return;
+  grain = std::max<std::size_t>(grain, 1);
+  const std::size_t chunks = (count + grain - 1) / grain;
+  const auto runChunk = [&](std::size_t chunk) {
+    if (context.cancelled()) return;
+    body(chunk * grain, std::min(count, (chunk + 1) * grain));
+  };
+  if (chunks == 1 || context.threads == 1) {
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) runChunk(chunk);
+    return;
+  }
+  oneapi::tbb::task_arena arena(context.threads > 0 ? context.threads : oneapi::tbb::task_arena::automatic);
+  arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, runChunk); });
+}
+
+double parallelSum(const Context& context, std::size_t count, std::size_t grain,
+                   const std::function<double(std::size_t, std::size_t)>& partial) {
+  if (count == 0) return 0;
+  grain = std::max<std::size_t>(grain, 1);
+  std::vector<double> sums((count + grain - 1) / grain, 0.0);
+  parallelFor(context, count, grain,
+              [&](std::size_t begin, std::size_t end) { sums[begin / grain] = partial(begin, end); });
+  for (std::size_t width = 1; width < sums.size(); width *= 2) {
+    for (std::size_t i = 0; i + width < sums.size(); i += 2 * width) sums[i] += sums[i + width];
+  }
+  return sums[0];
+}
+
+}  // namespace coif
