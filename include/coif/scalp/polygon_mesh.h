@@ -16,15 +16,15 @@ enum class UpAxis { Y, Z };
 /// V vertices, F faces of any size >= 3, counter-clockwise seen from outside, right-handed, lengths in the
 /// file's own unit. Face f has corners [faceOffsets[f], faceOffsets[f+1]).
 struct PolygonMesh {
-  std::vector<Vec3> positions;                 ///< V
-  std::vector<std::uint32_t> faceOffsets{0};   ///< F + 1
-  std::vector<std::uint32_t> corners;          ///< C vertex indices
-  std::vector<Vec2> cornerUvs;                 ///< C, or empty
-  std::vector<std::uint32_t> faceGroups;       ///< F indices into groupNames, or empty
-  std::vector<std::string> groupNames;         ///< groups and materials by name, as the file has them
-  double metersPerUnit = 0;                    ///< 0: the file does not say
+  std::vector<Vec3> positions;                ///< V
+  std::vector<std::uint32_t> faceOffsets{0};  ///< F + 1
+  std::vector<std::uint32_t> corners;         ///< C vertex indices
+  std::vector<Vec2> cornerUvs;                ///< C, or empty
+  std::vector<std::uint32_t> faceGroups;      ///< F indices into groupNames, or empty
+  std::vector<std::string> groupNames;        ///< groups and materials by name, as the file has them
+  double metersPerUnit = 0;                   ///< 0: the file does not say
   UpAxis upAxis = UpAxis::Y;
-  std::vector<std::string> notes;              ///< what the reader left out or had to assume, a sentence each
+  std::vector<std::string> notes;  ///< what the reader left out or had to assume, a sentence each
 
   std::size_t vertexCount() const { return positions.size(); }
   std::size_t faceCount() const { return faceOffsets.size() - 1; }
