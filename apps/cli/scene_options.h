@@ -1,0 +1,33 @@
+// Options that several subcommands put on a scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coif/scene/evaluate.h"
+#include "command.h"
+
+namespace coif::cli {
+
+/// --strands, --points, --tolerance, --seed, --width: what the document says unless given.
+struct StrandArguments {
+  std::optional<std::uint64_t> count, seed;
+  std::optional<std::uint32_t> points;
+  std::optional<double> tolerance, width;
+
+  void addTo(CLI::App& command);
+  void apply(Scene& scene) const;
+};
+
+/// --explain, --report, --force, --no-head, --solver.
+struct EvaluateArguments {
+  bool explain = false, noHead = false;
+  std::string reportFile;
+  std::vector<std::string> force;
+
+  void addTo(CLI::App& command);
+  EvaluateOptions options() const;
+};
+
+}  // namespace coif::cli
