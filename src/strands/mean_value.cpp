@@ -1,5 +1,6 @@
 #include "coif/strands/mean_value.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <vector>
 

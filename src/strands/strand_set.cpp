@@ -11,7 +11,9 @@ Error malformed(std::string message, std::string place = {}) {
   return makeError(ErrorCode::InvalidArgument, std::move(message), std::move(place));
 }
 
-std::string strandPlace(std::size_t strand) { return "strand " + std::to_string(strand); }
+std::string strandPlace(std::size_t strand) {
+  return "strand " + std::to_string(strand);
+}
 
 Status checkOffsets(std::span<const std::uint64_t> offsets, std::uint64_t end, const char* what) {
   if (offsets.empty() || offsets.front() != 0) return malformed(std::string(what) + " must start with 0");

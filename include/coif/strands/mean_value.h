@@ -1,8 +1,9 @@
 // Mean value coordinates of a point in a polygon.
 //
-// λ = w / Σw with w_i = (tan(α_{i−1}/2) + tan(α_i/2)) / r_i (Floater, "Mean value coordinates", CAGD 20, 2003, eq. 2.1).
-// tan(α/2) is taken from dot and cross products by whichever of two exact formulas does not cancel, so the result is
-// accurate next to edges and corners too. Concave polygons are legal and may give negative weights.
+// λ = w / Σw with w_i = (tan(α_{i−1}/2) + tan(α_i/2)) / r_i (Floater, "Mean value coordinates", CAGD 20,
+// 2003, eq. 2.1). tan(α/2) is taken from dot and cross products by whichever of two exact formulas does not
+// cancel, so the result is accurate next to edges and corners too. Concave polygons are legal and may give
+// negative weights.
 #pragma once
 
 #include <algorithm>
@@ -21,17 +22,18 @@ enum class MeanValueCase {
   Degenerate,  ///< no weights exist (a point polygon): out is 1/n
 };
 
-/// Square root and finiteness for the number type of meanValueWeights; specialise for others than the standard ones.
+/// Square root and finiteness for the number type of meanValueWeights; specialise for others than the
+/// standard ones.
 template <class T>
 struct MeanValueMath {
   static T sqrt(T value) { return std::sqrt(value); }
   static bool isFinite(T value) { return std::isfinite(value); }
 };
 
-/// The kernel, for any floating type. xy: n corners as x, y pairs in order (either direction), n >= 3; out: n weights.
-/// Lengths are scaled by a power of two near the polygon's extent, so no size over- or underflows.
-/// Accuracy for a point inside: max |λ − exact| <= 1e-13 (double), 1e-6 (float), tested against 50-digit values.
-/// Cost: one pass, n square roots, no memory.
+/// The kernel, for any floating type. xy: n corners as x, y pairs in order (either direction), n >= 3; out: n
+/// weights. Lengths are scaled by a power of two near the polygon's extent, so no size over- or underflows.
+/// Accuracy for a point inside: max |λ − exact| <= 1e-13 (double), 1e-6 (float), tested against 50-digit
+/// values. Cost: one pass, n square roots, no memory.
 template <class T>
 MeanValueCase meanValueWeights(const T* xy, std::size_t n, T x, T y, T* out);
 
