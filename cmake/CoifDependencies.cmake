@@ -1,10 +1,6 @@
 # Everything Coif stands on; scripts/setup.sh installs it.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
-find_package(OpenMesh QUIET)
-if(NOT OpenMesh_FOUND)
-  find_package(OpenMeshLib QUIET)
-endif()
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 
@@ -12,6 +8,7 @@ find_package(Threads REQUIRED)
 function(coif_system_library TARGET HEADER)
   find_path(${TARGET}_INCLUDE ${HEADER} REQUIRED)
   add_library(coif_3rd_${TARGET} INTERFACE)
+  set_target_properties(coif_3rd_${TARGET} PROPERTIES EXPORT_NAME 3rd_${TARGET})
   target_include_directories(coif_3rd_${TARGET} SYSTEM INTERFACE ${${TARGET}_INCLUDE})
   foreach(name ${ARGN})
     find_library(${TARGET}_${name}_LIBRARY ${name} REQUIRED)
