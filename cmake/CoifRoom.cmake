@@ -1,12 +1,13 @@
-# coif_room(NAME [ROOMS room...] [PUBLIC lib...] [PRIVATE lib...])
+# coif_room(NAME [ROOMS room...] [PUBLIC lib...] [PRIVATE lib...] [HEADERS lib...])
 # One static library coif_NAME (alias coif::NAME) from every source below src/NAME.
+# HEADERS: third parties of headers alone, which a user of the installed library does not need.
 add_library(coif_options INTERFACE)
 target_compile_features(coif_options INTERFACE cxx_std_20)
 target_compile_options(coif_options INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off>)
 
 function(coif_room NAME)
-  cmake_parse_arguments(ROOM "" "" "ROOMS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "ROOMS;PUBLIC;PRIVATE;HEADERS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   add_library(coif_${NAME} STATIC ${sources})
   add_library(coif::${NAME} ALIAS coif_${NAME})
@@ -15,6 +16,9 @@ function(coif_room NAME)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ROOM_ROOMS PREPEND coif::)
+  foreach(header_library ${ROOM_HEADERS})
+    target_link_libraries(coif_${NAME} PRIVATE $<BUILD_INTERFACE:${header_library}>)
+  endforeach()
   target_link_libraries(coif_${NAME} PUBLIC ${ROOM_ROOMS} ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE} $<BUILD_INTERFACE:coif_options>)
   set_property(GLOBAL APPEND PROPERTY COIF_ROOMS coif_${NAME})
 endfunction()
