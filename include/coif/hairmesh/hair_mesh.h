@@ -1,8 +1,8 @@
 // The hair mesh: layers of polygons over a root layer, one column of faces (a bundle) a root face.
 //
-// Source: Yuksel, Schaefer, Keyser, "Hair Meshes", 2009, section 3; the corrections are listed in docs/hairmesh.md.
-// Plain value: copy, compare and serialise it freely. Every operation keeps every invariant (invariants.h) or
-// returns an Error and changes nothing.
+// Source: Yuksel, Schaefer, Keyser, "Hair Meshes", 2009, section 3; the corrections are listed in
+// docs/hairmesh.md. Plain value: copy, compare and serialise it freely. Every operation keeps every invariant
+// (invariants.h) or returns an Error and changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ struct HairVertex {
   Vec3 position = Vec3::Zero();
   std::uint32_t parent = kNone;  ///< index of the parent vertex, one layer down; kNone on layer 0
   std::uint32_t layer = 0;
-  bool pinned = false;           ///< the artist's wish: treat as external
+  bool pinned = false;  ///< the artist's wish: treat as external
+  bool welded = false;  ///< a declared bow-tie: a vertex weld holds several fans of faces together here
   bool operator==(const HairVertex&) const = default;
 };
 
@@ -42,7 +43,8 @@ struct Bundle {
   bool operator==(const Bundle&) const = default;
 };
 
-/// A root edge whose two bundles no longer share it from `layer` upwards. `a` < `b` are layer-0 vertex indices.
+/// A root edge whose two bundles no longer share it from `layer` upwards. `a` < `b` are layer-0 vertex
+/// indices.
 struct EdgeSplit {
   std::uint32_t a = 0, b = 0, layer = 0;
   auto operator<=>(const EdgeSplit&) const = default;
@@ -61,15 +63,15 @@ struct EdgeRef {
   auto operator<=>(const EdgeRef&) const = default;
 };
 
-/// How a new vertex is placed relative to its source: see operations.h.
 class HairMesh {
  public:
   HairMesh() = default;
 
   /// The root layer alone (every height 0). positions: V×3; face f has corners [offsets[f], offsets[f+1]) of
-  /// `corners`. Vertices that no face uses are dropped; a vertex whose faces only touch there (a bow-tie) is split.
-  /// Errors: Degenerate for an edge of three or more faces, or two faces that run along an edge the same way;
-  /// InvalidArgument for indices out of range, faces of fewer than three distinct corners, values not finite.
+  /// `corners`. Vertices that no face uses are dropped; a vertex whose faces only touch there (a bow-tie) is
+  /// split. Errors: Degenerate for an edge of three or more faces, or two faces that run along an edge the
+  /// same way; InvalidArgument for indices out of range, faces of fewer than three corners or with a vertex
+  /// twice, values not finite.
   static Result<HairMesh> fromRoot(std::span<const Vec3> positions, std::span<const std::uint32_t> offsets,
                                    std::span<const std::uint32_t> corners);
 
@@ -78,22 +80,23 @@ class HairMesh {
                                     std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
                                     std::uint32_t nextVertexId, std::uint32_t nextBundleId);
 
-  // Reading. Vertices ascend by id, bundles ascend by id; indices are dense and change when elements come or go.
+  // Reading. Vertices ascend by id, bundles ascend by id; indices are dense and change when elements come or
+  // go.
   std::span<const HairVertex> vertices() const { return vertices_; }
   std::span<const Bundle> bundles() const { return bundles_; }
   std::span<const EdgeSplit> splits() const { return splits_; }
   std::span<const std::string> groupNames() const { return groupNames_; }
   std::uint32_t nextVertexId() const { return nextVertexId_; }
   std::uint32_t nextBundleId() const { return nextBundleId_; }
-  std::uint32_t layerCount() const;                   ///< 1 + the greatest height; 0 when empty
-  std::uint32_t indexOf(VertexId id) const;           ///< kNone when there is none
-  std::uint32_t indexOf(BundleId id) const;           ///< kNone when there is none
+  std::uint32_t layerCount() const;          ///< 1 + the greatest height; 0 when empty
+  std::uint32_t indexOf(VertexId id) const;  ///< kNone when there is none
+  std::uint32_t indexOf(BundleId id) const;  ///< kNone when there is none
   const Vec3& position(std::uint32_t vertex) const { return vertices_[vertex].position; }
 
   // Geometry. Sizes and indices are preconditions (checked).
   void setPosition(std::uint32_t vertex, const Vec3& position) { vertices_.at(vertex).position = position; }
   void setPinned(std::uint32_t vertex, bool pinned) { vertices_.at(vertex).pinned = pinned; }
-  std::uint32_t addGroup(const std::string& name);    ///< index of the group of that name, made if new
+  std::uint32_t addGroup(const std::string& name);  ///< index of the group of that name, made if new
   void setGroup(std::uint32_t bundle, std::uint32_t group) { bundles_.at(bundle).group = group; }
 
   bool operator==(const HairMesh&) const = default;
@@ -115,7 +118,7 @@ std::vector<std::uint8_t> externalVertices(const HairMesh& mesh);
 /// The quad between edge (a, b) of a layer and its child edge (c, d): a→b below, c over a, d over b.
 struct SideQuad {
   std::uint32_t a = 0, b = 0, c = 0, d = 0;  ///< vertex indices
-  bool exposed = false;                       ///< one bundle uses it, not two
+  bool exposed = false;                      ///< one bundle uses it, not two
 };
 /// Every side quad once, ordered by (bundle, layer, side) of its first use.
 std::vector<SideQuad> sideQuads(const HairMesh& mesh);
