@@ -1,5 +1,7 @@
 #include "coif/scalp/polygon_mesh.h"
 
+#include <Eigen/Geometry>
+
 namespace coif {
 
 void PolygonMesh::addFace(std::span<const std::uint32_t> vertices) {

@@ -24,10 +24,12 @@ struct Created {
 };
 
 struct ExtrudeOptions {
-  double distance = 0;  ///< along the area-weighted normal of the extruded faces at the vertex
-  std::optional<Vec3> direction = std::nullopt;  ///< instead: every new vertex is displaced by this vector
-  std::vector<Vec3>
-      offsets;  ///< instead: one a vertex of the mesh, by index, added to the new vertex's parent
+  /// Along the area-weighted normal of the extruded faces at the vertex.
+  double distance = 0;
+  /// Instead: every new vertex is displaced by this vector.
+  std::optional<Vec3> direction = std::nullopt;
+  /// Instead: one vector a vertex of the mesh, by index, added to the new vertex's parent.
+  std::vector<Vec3> offsets = {};
 };
 
 /// A new layer face and prism on each bundle's tip. Faces extruded together from one layer share new vertices
