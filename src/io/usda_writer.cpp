@@ -70,7 +70,7 @@ void appendElement(const Type& type, const std::byte* bytes, std::string& out) {
   if (type.components > 1) out += ')';
 }
 
-std::string quoted(std::string_view text) {
+std::string inQuotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -131,7 +131,7 @@ class TextWriter {
     std::string out = list ? "[" : "";
     for (std::size_t i = 0; i < value.strings.size(); ++i) {
       if (i > 0) out += ", ";
-      out += quoted(value.strings[i]);
+      out += inQuotes(value.strings[i]);
     }
     file_.write(list ? out + "]" : out);
   }
