@@ -112,19 +112,23 @@ Value extentOf(const Value& points, float radius) {
       hi = hi.cwiseMax(p[i]);
     }
   });
-  if (points.array.count == 0) lo = hi = Vec3f::Zero();
   return owned(kFloat3s, std::vector<Vec3f>{lo - Vec3f::Constant(radius), hi + Vec3f::Constant(radius)});
 }
 
-float greatestRadius(const StrandSet& set, float constantWidth) {
-  float width = set.widths.empty() ? constantWidth : 0;
-  for (const float w : set.widths) width = std::max(width, w);
+float greatestRadius(const StrandSet& set, const Group& group, float constantWidth) {
+  if (set.widths.empty()) return constantWidth / 2;
+  float width = 0;
+  pointView(group, kFloats, std::span<const float>(set.widths))
+      .array.forEachPiece(sizeof(float), [&](auto bytes) {
+        const auto* w = reinterpret_cast<const float*>(bytes.data());
+        for (std::size_t i = 0; i < bytes.size() / sizeof(float); ++i) width = std::max(width, w[i]);
+      });
   return width / 2;
 }
 
-void addGeometry(const StrandExport& what, const Group& group, float constantWidth, float radius,
-                 Prim& prim) {
+void addGeometry(const StrandExport& what, const Group& group, float constantWidth, Prim& prim) {
   const StrandSet& set = *what.strands;
+  const float radius = greatestRadius(set, group, constantWidth);
   prim.attributes.push_back(makeUniform("type", "token", token("cubic")));
   prim.attributes.push_back(makeUniform("basis", "token", token("catmullRom")));
   prim.attributes.push_back(makeUniform("wrap", "token", token("pinned")));
@@ -140,7 +144,7 @@ void addGeometry(const StrandExport& what, const Group& group, float constantWid
     position.samples.push_back({frame.timeCode, std::move(moved)});
   }
   prim.attributes.push_back(std::move(position));
-  prim.attributes.push_back(std::move(extent));
+  if (points.array.count > 0) prim.attributes.push_back(std::move(extent));
   const bool perPoint = !set.widths.empty();
   prim.attributes.push_back(makePrimvar("widths", "float[]", perPoint ? "vertex" : "constant",
                                         perPoint
@@ -220,12 +224,12 @@ void addWeights(const StrandSet& set, const Group& group, Prim& prim) {
   prim.attributes.push_back(std::move(values));
 }
 
-Prim describeGroup(const StrandExport& what, const Group& group, float constantWidth, float radius) {
+Prim describeGroup(const StrandExport& what, const Group& group, float constantWidth) {
   Prim prim;
   prim.typeName = "BasisCurves";
   prim.metadata.push_back({"apiSchemas", prependedTokens({"GroomAPI", "MaterialBindingAPI"})});
   prim.metadata.push_back({"displayName", string(cleanText(group.name))});
-  addGeometry(what, group, constantWidth, radius, prim);
+  addGeometry(what, group, constantWidth, prim);
   addColors(what, group, prim);
   addIdentity(*what.strands, group, prim);
   addWeights(*what.strands, group, prim);
@@ -315,7 +319,6 @@ Result<Layer> describeExport(const StrandExport& what, std::vector<std::string>&
   COIF_TRY(checkLengths(set));
   const double unit = unitOf(set, notes);
   const float constantWidth = float(kDefaultDiameterMeters / unit);
-  const float radius = greatestRadius(set, constantWidth);
   if (set.widths.empty()) notes.push_back("The strands have no widths; 0.08 mm is written for all.");
 
   Layer layer;
@@ -323,7 +326,7 @@ Result<Layer> describeExport(const StrandExport& what, std::vector<std::string>&
   Prim root = describeRoot(set);
   std::vector<std::string> taken = {"HairMesh", "Head", "Looks"};
   for (const Group& group : groupsOf(set)) {
-    Prim prim = describeGroup(what, group, constantWidth, radius);
+    Prim prim = describeGroup(what, group, constantWidth);
     prim.name = primName(group.name, taken);
     root.children.push_back(std::move(prim));
   }
