@@ -1,5 +1,6 @@
 #include "coif/scalp/geodesic.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

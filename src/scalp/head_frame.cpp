@@ -1,5 +1,6 @@
 #include "coif/scalp/head_frame.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "coif/scalp/mesh_report.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,6 +1,7 @@
 #include "coif/scalp/mirror.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

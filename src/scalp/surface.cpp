@@ -1,5 +1,6 @@
 #include "coif/scalp/surface.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

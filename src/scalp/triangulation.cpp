@@ -1,5 +1,7 @@
 #include "triangulation.h"
 
+#include <Eigen/Geometry>
+
 namespace coif {
 namespace {
 
