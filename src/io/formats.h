@@ -9,6 +9,10 @@ namespace coif::io {
 
 using Bytes = std::span<const std::byte>;
 
+/// Diameter of a usual human hair in metres: what a writer states where the strands have no widths and the
+/// format must state some.
+inline constexpr double kUsualHairWidth = 70e-6;
+
 // Meshes in. `path` serves messages and side files (.bin buffers).
 Result<PolygonMesh> readObj(Bytes bytes, const std::filesystem::path& path);
 Result<PolygonMesh> readPly(Bytes bytes, const std::filesystem::path& path);
@@ -23,8 +27,11 @@ Result<StrandSet> readGltfStrands(Bytes bytes, const std::filesystem::path& path
 Result<StrandSet> readUsdStrands(Bytes bytes, const std::filesystem::path& path);
 
 // Strands out; the caller has validated `what.strands`.
-Result<WriteReport> writeHair(const StrandExport& what, const std::filesystem::path& path, const Context& context);
-Result<WriteReport> writeGltf(const StrandExport& what, const std::filesystem::path& path, const Context& context);
-Result<WriteReport> writeUsd(const StrandExport& what, const std::filesystem::path& path, const Context& context);
+Result<WriteReport> writeHair(const StrandExport& what, const std::filesystem::path& path,
+                              const Context& context);
+Result<WriteReport> writeGltf(const StrandExport& what, const std::filesystem::path& path,
+                              const Context& context);
+Result<WriteReport> writeUsd(const StrandExport& what, const std::filesystem::path& path,
+                             const Context& context);
 
 }  // namespace coif::io

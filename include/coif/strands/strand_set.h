@@ -31,6 +31,7 @@ struct StrandSet {
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;
   std::string information;                     ///< free text that some formats carry (.hair: 87 bytes at most)
+  std::vector<std::string> notes;              ///< what a reader left out or had to assume, a sentence each
 
   std::size_t strandCount() const { return offsets.size() - 1; }
   std::size_t pointCount() const { return points.size(); }
