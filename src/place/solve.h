@@ -1,0 +1,24 @@
+// One solve: choose the solver, run it, bound the error.
+#pragma once
+
+#include "coif/place/place.h"
+#include "place/system.h"
+
+namespace coif::placing {
+
+struct Solution {
+  Block delta;  ///< of the unknowns; free components have mean 0 where iterated: pin them next
+  PlaceSolver solver = PlaceSolver::Auto;
+  int iterations = 0;
+  bool converged = true;
+  double bound = 0;      ///< proven max error over the unknowns, in the units of the field
+  double condition = 0;  ///< of the preconditioned matrix, see PlaceReport
+};
+
+/// Minimises ‖strain + G δ‖² to an error of at most `target` > 0. Errors: TooLarge, Cancelled.
+Result<Solution> solve(const HairMesh& mesh, const PlaceSystem& system, const Block& strain, double target,
+                       const PlaceOptions& options, const Context& context);
+
+Status checkOptions(const PlaceOptions& options);
+
+}  // namespace coif::placing
