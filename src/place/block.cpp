@@ -1,36 +1,54 @@
 #include "place/block.h"
 
+#include <type_traits>
+
 #include "coif/base/parallel.h"
 
 namespace coif::placing {
 
 namespace {
+
 constexpr std::size_t kGrain = 4096;  // rows a task: below it a task costs more than it saves
+
+// Calls body with the number of columns as a constant for the two counts that occur (a drag, a position), so
+// that the inner loops unroll.
+template <class Body>
+void withColumns(Eigen::Index columns, const Body& body) {
+  if (columns == 1) return body(std::integral_constant<std::size_t, 1>{});
+  if (columns == 3) return body(std::integral_constant<std::size_t, 3>{});
+  body(std::size_t(columns));
 }
 
+}  // namespace
+
 void multiply(const Csr& matrix, const Block& x, Block& y, const Context& context) {
-  const Eigen::Index columns = x.cols();
-  parallelFor(context, matrix.rows(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      double* out = y.data() + row * std::size_t(columns);
-      for (Eigen::Index c = 0; c < columns; ++c) out[c] = 0;
-      for (std::size_t e = matrix.start[row]; e < matrix.start[row + 1]; ++e) {
-        const double* in = x.data() + std::size_t(matrix.column[e]) * std::size_t(columns);
-        for (Eigen::Index c = 0; c < columns; ++c) out[c] += matrix.value[e] * in[c];
+  withColumns(x.cols(), [&](const auto m) {
+    parallelFor(context, matrix.rows(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        double* out = y.data() + row * m;
+        for (std::size_t c = 0; c < m; ++c) out[c] = 0;
+        for (std::size_t e = matrix.start[row]; e < matrix.start[row + 1]; ++e) {
+          const double value = matrix.value[e];
+          const double* in = x.data() + std::size_t(matrix.column[e]) * m;
+          for (std::size_t c = 0; c < m; ++c) out[c] += value * in[c];
+        }
       }
-    }
+    });
   });
 }
 
 Sums dots(const Block& a, const Block& b, const Context& context) {
   const std::size_t rows = std::size_t(a.rows());
   std::vector<Sums> partial((rows + kGrain - 1) / kGrain);
-  parallelFor(context, rows, kGrain, [&](std::size_t begin, std::size_t end) {
-    Sums sum = Sums::Zero(a.cols());
-    for (std::size_t row = begin; row < end; ++row) {
-      sum += a.row(Eigen::Index(row)) * b.row(Eigen::Index(row));
-    }
-    partial[begin / kGrain] = sum;
+  withColumns(a.cols(), [&](const auto m) {
+    parallelFor(context, rows, kGrain, [&](std::size_t begin, std::size_t end) {
+      Sums sum = Sums::Zero(a.cols());
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t c = 0; c < m; ++c)
+          sum[Eigen::Index(c)] += a.data()[row * m + c] * b.data()[row * m + c];
+      }
+      partial[begin / kGrain] = sum;
+    });
   });
   Sums total = Sums::Zero(a.cols());
   for (const Sums& sum : partial) {
@@ -40,17 +58,26 @@ Sums dots(const Block& a, const Block& b, const Context& context) {
 }
 
 void addScaled(Block& y, const Block& x, const Sums& scale, const Context& context) {
-  parallelFor(context, std::size_t(y.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Eigen::Index row = Eigen::Index(begin); row < Eigen::Index(end); ++row)
-      y.row(row) += x.row(row) * scale;
+  withColumns(y.cols(), [&](const auto m) {
+    parallelFor(context, std::size_t(y.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t c = 0; c < m; ++c)
+          y.data()[row * m + c] += x.data()[row * m + c] * scale[Eigen::Index(c)];
+      }
+    });
   });
 }
 
 void scaleAndAdd(Block& p, const Block& z, const Sums& scale, const Context& context) {
-  parallelFor(context, std::size_t(p.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Eigen::Index row = Eigen::Index(begin); row < Eigen::Index(end); ++row) {
-      p.row(row) = z.row(row) + p.row(row) * scale;
-    }
+  withColumns(p.cols(), [&](const auto m) {
+    parallelFor(context, std::size_t(p.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t c = 0; c < m; ++c) {
+          double& out = p.data()[row * m + c];
+          out = z.data()[row * m + c] + out * scale[Eigen::Index(c)];
+        }
+      }
+    });
   });
 }
 

@@ -15,8 +15,7 @@ class Preconditioner {
 
 std::unique_ptr<Preconditioner> makeIdentity();
 std::unique_ptr<Preconditioner> makeJacobi(const Csr& matrix);
-/// Incomplete Cholesky, as many entries as the matrix, shifted until it exists (Lin and Moré 1999; Eigen).
-/// Null when it does not exist.
+/// Threshold incomplete LDLᵀ with diagonal compensation: exists for every placement matrix.
 std::unique_ptr<Preconditioner> makeIncompleteCholesky(const Csr& matrix);
 
 }  // namespace coif::placing

@@ -52,12 +52,9 @@ Status refine(const PlaceSystem& system, const BoxInverse& box, const Block& str
 constexpr double kDirectFlops = 2e8;
 constexpr double kDirectEntries = 2e6;
 
-std::unique_ptr<Preconditioner> preconditionerFor(PlaceSolver& solver, const Csr& matrix) {
+std::unique_ptr<Preconditioner> preconditionerFor(PlaceSolver solver, const Csr& matrix) {
   if (solver == PlaceSolver::ConjugateGradient) return makeIdentity();
-  if (solver == PlaceSolver::IncompleteCholesky) {
-    if (auto factor = makeIncompleteCholesky(matrix)) return factor;
-    solver = PlaceSolver::Jacobi;  // the report says which one ran
-  }
+  if (solver == PlaceSolver::IncompleteCholesky) return makeIncompleteCholesky(matrix);
   return makeJacobi(matrix);
 }
 
@@ -93,10 +90,11 @@ Result<Solution> solve(const HairMesh& mesh, const PlaceSystem& system, const Bl
 
   std::unique_ptr<Preconditioner> own;
   if (solution.solver != PlaceSolver::Tensor) own = preconditionerFor(solution.solver, system.matrix());
+  const Preconditioner& preconditioner = own ? *own : static_cast<const Preconditioner&>(box);
   COIF_TRY(refine(system, box, strain, target, 0, context, solution, [&](const Block& r, Block& delta) {
     Block running = r;
     const CgOutcome outcome =
-        conjugateGradients(system, own ? *own : box, box, target, options.maxIterations - solution.iterations,
+        conjugateGradients(system, preconditioner, box, target, options.maxIterations - solution.iterations,
                            delta, running, context);
     if (solution.condition == 0) solution.condition = ritzCondition(outcome);
     return Pass{outcome.iterations, outcome.cancelled};
