@@ -1,4 +1,4 @@
-// Stands in for the USD reader and writer until they land; delete it with the first of them.
+// Stands in for the USD readers until they land; delete it with the first of them.
 #include "io/formats.h"
 
 namespace coif::io {
@@ -10,9 +10,6 @@ Result<PolygonMesh> readUsdMesh(Bytes, const std::filesystem::path& path) {
   return pending(path);
 }
 Result<StrandSet> readUsdStrands(Bytes, const std::filesystem::path& path) {
-  return pending(path);
-}
-Result<WriteReport> writeUsd(const StrandExport&, const std::filesystem::path& path, const Context&) {
   return pending(path);
 }
 
