@@ -11,18 +11,17 @@
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/scalp/surface.h"
+#include "coif/strands/catmull_rom.h"
 #include "coif/strands/strand_set.h"
 
 namespace coif {
-
-enum class Knots { Uniform, Centripetal, Chordal };  ///< non-uniform knots are shared per bundle
 
 struct GrowOptions {
   std::size_t count = 10000;       ///< strands wanted; exactly so many are made while any bundle can grow
   std::uint32_t points = 32;       ///< points a strand, >= 2; ignored with a tolerance
   std::optional<double> tolerance; ///< chord error bound in scene units: adaptive number of points
   std::uint64_t seed = 1;
-  Knots knots = Knots::Uniform;
+  Knots knots = Knots::Uniform;    ///< others are shared per bundle: mean lengths of its columns
   double width = 0;                ///< root diameter in scene units; 0: 0.08 mm by metersPerUnit
   double tipWidth = 0.25;          ///< tip diameter as a fraction of the root's
   double metersPerUnit = 0.01;
