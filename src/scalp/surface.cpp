@@ -8,7 +8,7 @@
 #include "coif/base/check.h"
 #include "coif/base/parallel.h"
 #include "triangle_tree.h"
-#include "triangulation.h"
+#include "coif/scalp/triangulation.h"
 
 namespace coif {
 namespace {

@@ -1,4 +1,4 @@
-#include "triangulation.h"
+#include "coif/scalp/triangulation.h"
 
 #include <Eigen/Geometry>
 

@@ -9,8 +9,8 @@
 namespace coif {
 namespace {
 
-constexpr double kLeastKnot = 1e-6;           // of the curve's length
-constexpr double kMostPieces = 1 << 20;       // a segment
+constexpr double kLeastKnot = 1e-6;      // of the curve's length
+constexpr double kMostPieces = 1 << 20;  // a segment
 
 /// Weights of P(k−1), P(k), P(k+1), P(k+2) in a quantity of segment k.
 using Four = std::array<double, 4>;
@@ -24,7 +24,8 @@ Intervals around(std::span<const double> intervals, std::size_t k) {
           k + 1 < intervals.size() ? intervals[k + 1] : intervals[k]};
 }
 
-/// dP/du at the start (P(k)) of a segment, u running 0…1 over it: own·[(P1−P0)/before − (P2−P0)/(before+own) + (P2−P1)/own].
+/// dP/du at the start (P(k)) of a segment, u running 0…1 over it: own·[(P1−P0)/before − (P2−P0)/(before+own)
+/// + (P2−P1)/own].
 Four startTangent(const Intervals& d) {
   const double a = d.own / d.before, b = d.own / (d.before + d.own);
   return {b - a, a - 1, 1 - b, 0};
@@ -85,7 +86,8 @@ void splineWeights(std::span<const double> intervals, double parameter, std::spa
   const auto k = std::size_t(std::clamp(std::floor(parameter), 0.0, double(segments - 1)));
   const double u = std::clamp(parameter - double(k), 0.0, 1.0);
   const Intervals d = around(intervals, k);
-  const double h1 = u * u * (3 - 2 * u), g0 = u * (1 - u) * (1 - u), g1 = u * u * (u - 1);  // cubic Hermite basis
+  const double h1 = u * u * (3 - 2 * u), g0 = u * (1 - u) * (1 - u),
+               g1 = u * u * (u - 1);  // cubic Hermite basis
   std::fill(out.begin(), out.end(), 0.0);
   fold(combine(startTangent(d), g0, endTangent(d), g1, 1 - h1, h1), k, out.size(),
        [&](std::size_t i, double weight) { out[i] += weight; });

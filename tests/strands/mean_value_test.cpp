@@ -154,7 +154,8 @@ TEST(MeanValue, IsExactOnCornersAndEdges) {
 }
 
 TEST(MeanValue, KeepsNegativeWeightsOfConcavePolygons) {
-  // Inside any quadrilateral they are positive (Hormann and Floater 2006), so a U: its far arm sees backs of edges.
+  // Inside any quadrilateral they are positive (Hormann and Floater 2006), so a U: its far arm sees backs of
+  // edges.
   const std::vector<Vec2> u{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
   std::vector<double> out(u.size());
   const Vec2 point(0.5, 2.8);
