@@ -7,8 +7,8 @@
 
 #include "coif/base/check.h"
 #include "coif/base/parallel.h"
-#include "triangle_tree.h"
 #include "coif/scalp/triangulation.h"
+#include "triangle_tree.h"
 
 namespace coif {
 namespace {

@@ -78,6 +78,7 @@ class RootPlacer {
 
   Result<RootSet> run() {
     survey();
+    if (context_.cancelled()) return cancelled();
     if (options_.count > 0 && !(totalWeight_ > 0)) {
       return makeError(ErrorCode::Degenerate,
                        "no bundle can carry a strand: every one is without height, area, "
@@ -86,11 +87,13 @@ class RootPlacer {
     if (options_.count > 0) merge();
     group();
     fill();
-    if (context_.cancelled()) return makeError(ErrorCode::Cancelled, "stopped while placing roots");
+    if (context_.cancelled()) return cancelled();
     return std::move(out_);
   }
 
  private:
+  static Error cancelled() { return makeError(ErrorCode::Cancelled, "stopped while placing roots"); }
+
   void survey() {
     const auto bundles = mesh_.bundles();
     grounds_.resize(bundles.size());

@@ -121,7 +121,8 @@ class StrandSampler::Worker {
         for (std::size_t k = 0; k < row.size(); ++k) {
           if (row[k] != 0) sum += row[k] * column[k];
         }
-        for (int axis = 0; axis < 3; ++axis) columns_[i * stride() + 3 * p + std::size_t(axis)] = float(sum[axis]);
+        for (int axis = 0; axis < 3; ++axis)
+          columns_[i * stride() + 3 * p + std::size_t(axis)] = float(sum[axis]);
       }
     }
   }

@@ -18,17 +18,18 @@
 namespace coif {
 
 struct GrowOptions {
-  std::size_t count = 10000;        ///< strands wanted; exactly so many are made while any bundle can grow
-  std::uint32_t points = 32;        ///< points a strand, >= 2; ignored with a tolerance
-  std::optional<double> tolerance;  ///< chord error bound in scene units: adaptive number of points
+  std::size_t count = 10000;  ///< strands wanted; exactly so many are made while any bundle can grow
+  std::uint32_t points = 32;  ///< points a strand, >= 2; ignored with a tolerance
+  std::optional<double> tolerance =
+      std::nullopt;  ///< chord error bound in scene units: adaptive number of points
   std::uint64_t seed = 1;
   Knots knots = Knots::Uniform;  ///< others are shared per bundle: mean lengths of its columns
   double width = 0;              ///< root diameter in scene units; 0: 0.08 mm by metersPerUnit
   double tipWidth = 0.25;        ///< tip diameter as a fraction of the root's
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;
-  const Surface* head = nullptr;    ///< roots are laid on it, blending over the first segment; may be null
-  std::span<const double> density;  ///< optional weight a bundle (by index), >= 0
+  const Surface* head = nullptr;  ///< roots are laid on it, blending over the first segment; may be null
+  std::span<const double> density = {};  ///< optional weight a bundle (by index), >= 0
 };
 
 struct GrowReport {

@@ -52,7 +52,7 @@ struct RootSet {
 struct RootOptions {
   std::size_t count = 10000;  ///< exactly so many, <= 2^32 − 2, while any bundle can carry one
   std::uint64_t seed = 1;
-  std::span<const double> density;  ///< weight a bundle (by index), >= 0; empty: all 1
+  std::span<const double> density = {};  ///< weight a bundle (by index), >= 0; empty: all 1
 };
 
 /// Roots over the bundles of height >= 1. A bundle is of no length when no corner column is longer than 1e-9

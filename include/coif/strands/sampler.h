@@ -18,8 +18,8 @@
 namespace coif {
 
 struct SamplingOptions {
-  std::uint32_t points = 32;        ///< a strand, >= 2, evenly over the spline's parameter
-  std::optional<double> tolerance;  ///< instead: chord error bound in scene units, > 0
+  std::uint32_t points = 32;                       ///< a strand, >= 2, evenly over the spline's parameter
+  std::optional<double> tolerance = std::nullopt;  ///< instead: chord error bound in scene units, > 0
   Knots knots = Knots::Uniform;
 };
 
