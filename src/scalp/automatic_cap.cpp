@@ -64,8 +64,8 @@ MonotoneCurve hairline(const HeadFrame& frame, double front, double nape, double
                         {start - 18 * kDegree, ear + 0.55 * (front - ear)},
                         {start, ear},
                         {end, ear},
-                        {end + 0.35 * (std::numbers::pi - end), ear + 0.6 * (nape - ear)},
-                        {end + 0.7 * (std::numbers::pi - end), ear + 0.93 * (nape - ear)},
+                        {end + 0.35 * (std::numbers::pi - end), ear + 0.68 * (nape - ear)},
+                        {end + 0.7 * (std::numbers::pi - end), ear + 0.97 * (nape - ear)},
                         {std::numbers::pi, nape}});
 }
 

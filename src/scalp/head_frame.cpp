@@ -139,8 +139,12 @@ int faceSide(const Profile& profile, const Skull& skull) {
 double findChin(const Profile& profile, const Skull& skull, int side) {
   for (double h = 0.8 * skull.depth; h < 1.6 * skull.depth; h += 0.005 * skull.depth) {
     if (h >= profile.reach()) return profile.reach();
-    const Level& level = profile.at(h);
-    const double reach = side > 0 ? level.front - skull.middle : skull.middle - level.back;
+    // The gap between open lips is no chin: look a little further down as well.
+    double reach = 0;
+    for (double d = 0; d < 0.1 * skull.depth && h + d < profile.reach(); d += 0.01 * skull.depth) {
+      const Level& level = profile.at(h + d);
+      reach = std::max(reach, side > 0 ? level.front - skull.middle : skull.middle - level.back);
+    }
     if (reach < 0.75 * 0.5 * skull.depth) return h;
   }
   return 0;

@@ -14,6 +14,7 @@ namespace {
 
 /// Areas below this part of the longest side squared are rounding.
 constexpr double kZeroArea = 1e-12;
+constexpr std::size_t kMostShellLines = 16;
 
 class Inspector {
  public:
@@ -264,6 +265,10 @@ const MeshFinding* MeshReport::find(MeshFault fault) const {
 std::string MeshReport::text() const {
   std::ostringstream out;
   for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (i == kMostShellLines) {
+      out << "… and " << shells.size() - i << " shells more.\n";
+      break;
+    }
     const Shell& s = shells[i];
     out << "Shell " << i << ": " << s.faceCount << " faces, " << s.vertexCount << " vertices, "
         << (s.closed ? "closed" : std::to_string(s.boundaryLoops) + " boundary loops");

@@ -25,6 +25,7 @@ struct Surface::Impl {
   TriangleTree tree;  // in units of the bounding box's diagonal, about its middle
   Vec3 centre = Vec3::Zero();
   double scale = 1;
+  double size = 0;
 
   Vec3 toTree(const Vec3& p) const { return (p - centre) / scale; }
 
@@ -34,6 +35,7 @@ struct Surface::Impl {
 
   void build() {
     triangulation = triangulate(mesh);
+    size = bounds(mesh.positions).diagonal();
     std::vector<Vec3> used;
     for (std::uint32_t t = 0; t < triangulation.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) used.push_back(mesh.positions[vertex(t, k)]);
@@ -158,7 +160,7 @@ const PolygonMesh& Surface::mesh() const {
   return impl_->mesh;
 }
 double Surface::size() const {
-  return bounds(impl_->mesh.positions).diagonal();
+  return impl_->size;
 }
 
 }  // namespace coif

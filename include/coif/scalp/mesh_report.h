@@ -49,7 +49,7 @@ struct MeshReport {
   std::vector<MeshFinding> findings;     ///< in the order of MeshFault, only what was found
 
   const MeshFinding* find(MeshFault fault) const;
-  std::string text() const;  ///< a line a shell, a line a finding
+  std::string text() const;  ///< a line a shell (the first 16), a line a finding
 };
 
 /// Takes any mesh, valid or not; never fails. Cost: O(C log C), one thread.
