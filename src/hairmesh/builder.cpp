@@ -111,6 +111,7 @@ std::vector<EdgeSplit> HairMeshBuilder::splits() const {
 }
 
 Status HairMeshBuilder::retopologise(const std::vector<EdgeSplit>& splits) {
+  std::erase_if(bundles, [](const Bundle& bundle) { return bundle.vertices.empty(); });
   COIF_ASSIGN(topology, Topology::build(vertices.size(), bundles, splits));
   return {};
 }
@@ -190,9 +191,9 @@ Status HairMeshBuilder::commit(HairMesh& mesh) {
   return {};
 }
 
-Result<HairMesh> HairMeshBuilder::assemble(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
-                                           std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
-                                           std::uint32_t nextVertexId, std::uint32_t nextBundleId) {
+HairMesh HairMeshBuilder::restore(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
+                                  std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
+                                  std::uint32_t nextVertexId, std::uint32_t nextBundleId) {
   HairMesh mesh;
   mesh.vertices_ = std::move(vertices);
   mesh.bundles_ = std::move(bundles);
@@ -200,6 +201,14 @@ Result<HairMesh> HairMeshBuilder::assemble(std::vector<HairVertex> vertices, std
   mesh.groupNames_ = std::move(groupNames);
   mesh.nextVertexId_ = nextVertexId;
   mesh.nextBundleId_ = nextBundleId;
+  return mesh;
+}
+
+Result<HairMesh> HairMeshBuilder::assemble(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
+                                           std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
+                                           std::uint32_t nextVertexId, std::uint32_t nextBundleId) {
+  HairMesh mesh = restore(std::move(vertices), std::move(bundles), std::move(splits), std::move(groupNames),
+                          nextVertexId, nextBundleId);
   const auto faults = checkInvariants(mesh);
   if (!faults.empty()) {
     return makeError(faults[0].name == "root" ? ErrorCode::Degenerate : ErrorCode::InvalidArgument,

@@ -43,7 +43,7 @@ class HairMeshBuilder {
 
   /// Splits by present layer-0 vertices: live bundles, layer <= the lower height; sorted.
   std::vector<EdgeSplit> splits() const;
-  /// After root corners changed: adjacency anew, with these splits.
+  /// After root corners changed: adjacency anew, with these splits; deleted bundles go, so indices shift.
   Status retopologise(const std::vector<EdgeSplit>& splits);
 
   /// Drops what is unused, numbers densely, checks every invariant and replaces `mesh`. On error `mesh` is as
@@ -54,6 +54,11 @@ class HairMeshBuilder {
   static Result<HairMesh> assemble(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
                                    std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
                                    std::uint32_t nextVertexId, std::uint32_t nextBundleId);
+
+  /// The same unchecked: for a state that was a mesh before (undo, redo).
+  static HairMesh restore(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
+                          std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
+                          std::uint32_t nextVertexId, std::uint32_t nextBundleId);
 
  private:
   void compact();
