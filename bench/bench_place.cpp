@@ -1,0 +1,277 @@
+// Placement: every solver over tolerances, sizes and topologies, against a truth whose error is proven.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bench/bench.h"
+#include "bench/bench_text.h"
+#include "coif/base/random.h"
+#include "coif/hairmesh/operations.h"
+#include "coif/place/place.h"
+
+namespace coif {
+
+namespace {
+
+enum class Kind { Uniform, Mixed, MixedAndSplit };
+
+struct Problem {
+  std::uint32_t side, height;
+  Kind kind;
+  std::string name() const {
+    static constexpr const char* kNames[] = {"uniform", "mixed", "split"};
+    return "place-" + std::to_string(side) + "x" + std::to_string(side) + "x" + std::to_string(height) + "-" +
+           kNames[int(kind)];
+  }
+  std::string title() const {
+    static constexpr const char* kTitles[] = {"heights uniform", "heights mixed", "heights mixed, split"};
+    return std::to_string(side) + "\xc2\xb2 root quads \xc3\x97 " + std::to_string(height) + " layers, " +
+           kTitles[int(kind)];
+  }
+};
+
+HairMesh squareRoot(std::uint32_t side) {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> offsets{0}, corners;
+  for (std::uint32_t y = 0; y <= side; ++y) {
+    for (std::uint32_t x = 0; x <= side; ++x) positions.emplace_back(double(x) / side, double(y) / side, 0);
+  }
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::uint32_t v = y * (side + 1) + x;
+      corners.insert(corners.end(), {v, v + 1, v + side + 2, v + side + 1});
+      offsets.push_back(std::uint32_t(corners.size()));
+    }
+  }
+  return require(HairMesh::fromRoot(positions, offsets, corners));
+}
+
+// Heights: all alike, or drawn from {⌈n/2⌉, …, n} on 5 × 5 patches. Splits: from layer n/2 + 1 the mesh grows
+// in four strips that share nothing, as if three lines of edges had been separated. Every vertex above the
+// root is shaken, so that neither the outside nor the starting point is smooth.
+HairMesh makeMesh(const Problem& p, std::uint64_t seed) {
+  HairMesh mesh = squareRoot(p.side);
+  const CounterRandom random(seed, p.side);
+  const auto heightOf = [&](std::uint32_t f) {
+    if (p.kind == Kind::Uniform) return p.height;
+    const std::uint32_t patch = f % p.side * 5 / p.side + 5 * (f / p.side * 5 / p.side),
+                        half = (p.height + 1) / 2;
+    return half + random.below(patch, p.height - half + 1);
+  };
+  for (std::uint32_t k = 1; k <= p.height; ++k) {
+    const std::uint32_t strips = p.kind == Kind::MixedAndSplit && k > p.height / 2 ? 4 : 1;
+    for (std::uint32_t strip = 0; strip < strips; ++strip) {
+      std::vector<BundleId> grown;
+      for (std::uint32_t f = 0; f < p.side * p.side; ++f) {
+        if (heightOf(f) >= k && f % p.side * strips / p.side == strip) grown.push_back(BundleId(f));
+      }
+      ExtrudeOptions up;
+      up.direction = Vec3(0, 0, 1.0 / p.height);
+      if (!grown.empty()) (void)require(extrudeFaces(mesh, grown, up));
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
+    if (mesh.vertices()[v].layer == 0) continue;
+    const CounterRandom shake = random.child(v);
+    const Vec3 offset(shake.uniform(0) - 0.5, shake.uniform(1) - 0.5, shake.uniform(2) - 0.5);
+    mesh.setPosition(v, mesh.position(v) + 0.5 * offset);
+  }
+  return mesh;
+}
+
+double boundingDiagonal(const HairMesh& mesh) {
+  Vec3 low = mesh.position(0), high = low;
+  for (const HairVertex& v : mesh.vertices()) {
+    low = low.cwiseMin(v.position);
+    high = high.cwiseMax(v.position);
+  }
+  return (high - low).norm();
+}
+
+double distance(const HairMesh& a, const HairMesh& b) {
+  double worst = 0;
+  for (std::uint32_t v = 0; v < a.vertices().size(); ++v) {
+    worst = std::max(worst, (a.position(v) - b.position(v)).norm());
+  }
+  return worst;
+}
+
+struct Truth {
+  HairMesh mesh;
+  PlaceReport report;
+  double diagonal = 1;
+};
+
+// Direct while its factor takes well under a second, else the tensor solver: both errors are proven bounds.
+constexpr std::size_t kDirectTruth = 5000;
+
+Truth solveTruth(const HairMesh& start, const BenchOptions& options) {
+  Truth truth{start, {}, boundingDiagonal(start)};
+  PlaceOptions choice{PlaceSolver::Direct, 1e-13};
+  PlaceReport sizes = require(place(truth.mesh, {PlaceSolver::Tensor, 1e-2}, options.context));
+  truth.mesh = start;
+  if (sizes.unknowns > kDirectTruth) choice.solver = PlaceSolver::Tensor;
+  truth.report = require(place(truth.mesh, choice, options.context));
+  return truth;
+}
+
+// Fewest iterations after which the tensor solver's true error is at most `error`; the error falls steadily,
+// so bisection finds it.
+int iterationsTo(double error, const HairMesh& start, const Truth& truth, const BenchOptions& options) {
+  const auto errorAfter = [&](int iterations) {
+    HairMesh mesh = start;
+    (void)require(place(mesh, {PlaceSolver::Tensor, 1e-12, iterations}, options.context));
+    return distance(mesh, truth.mesh) / truth.diagonal;
+  };
+  int low = -1, high = 1;
+  while (errorAfter(high) > error && high < 4096) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (errorAfter(middle) > error ? low : high) = middle;
+  }
+  return high;
+}
+
+struct Method {
+  PlaceSolver solver;
+  const char* name;
+};
+constexpr Method kMethods[] = {{PlaceSolver::ConjugateGradient, "conjugate gradients"},
+                               {PlaceSolver::Jacobi, "Jacobi"},
+                               {PlaceSolver::IncompleteCholesky, "incomplete Cholesky"},
+                               {PlaceSolver::Tensor, "tensor"},
+                               {PlaceSolver::Direct, "direct"},
+                               {PlaceSolver::Auto, "auto"}};
+
+struct Tally {
+  double worstCover = 0;          ///< true / reported error
+  std::vector<double> overstate;  ///< reported / true
+  double worstAuto = 0;           ///< seconds of auto / of the fastest
+};
+
+void measure(const Problem& problem, const HairMesh& start, const Truth& truth, const BenchOptions& options,
+             BenchPlot& plot, BenchReport& report, Tally& tally) {
+  const bool large = truth.report.unknowns > kDirectTruth;
+  std::vector<double> tolerances{1e-2, 1e-4, 1e-6, 1e-9, 1e-12};
+  if (options.quick) tolerances = {1e-4, 1e-9};
+  std::map<PlaceSolver, double> secondsAt9;
+  for (const Method& method : kMethods) {
+    if (large && method.solver == PlaceSolver::Direct) continue;
+    for (const double tolerance : tolerances) {
+      const bool slow =
+          large && (method.solver == PlaceSolver::ConjugateGradient || method.solver == PlaceSolver::Jacobi);
+      if (slow && tolerance != 1e-4 && tolerance != 1e-9) continue;
+      HairMesh mesh;
+      PlaceReport run;
+      BenchSample sample{method.name, {{"tolerance", shortNumber(tolerance)}}, 0, 0, 0};
+      sample.seconds = fastestSeconds([&] {
+        mesh = start;
+        run = require(place(mesh, {method.solver, tolerance}, options.context));
+      });
+      sample.error = distance(mesh, truth.mesh) / truth.diagonal;
+      // What the truth itself may be off by is not the sample's.
+      const double sure = std::max(0.0, sample.error - truth.report.error.value);
+      tally.worstCover = std::max(tally.worstCover, sure / run.error.value);
+      if (sample.error > 1e2 * truth.report.error.value)
+        tally.overstate.push_back(run.error.value / sample.error);
+      if (tolerance == 1e-9) {
+        secondsAt9[method.solver] = sample.seconds;
+        if (method.solver == PlaceSolver::ConjugateGradient) {
+          report.figures.push_back({problem.title() + ": condition number", run.condition, ""});
+        }
+      }
+      plot.samples.push_back(std::move(sample));
+    }
+  }
+  plot.rateAgainst("conjugate gradients", {{"tolerance", "1e-09"}});
+  const double fastest =
+      std::ranges::min_element(secondsAt9, {}, [](const auto& s) { return s.second; })->second;
+  tally.worstAuto = std::max(tally.worstAuto, secondsAt9[PlaceSolver::Auto] / fastest);
+  report.figures.push_back({problem.title() + ": auto's time / plain conjugate gradients' at 1e-9",
+                            secondsAt9[PlaceSolver::Auto] / secondsAt9[PlaceSolver::ConjugateGradient], "",
+                            Bar::AtMost, 1.0});
+}
+
+// The prototype's iteration counts, which the solver has to match (docs/place.md).
+int iterationBar(const Problem& p) {
+  if (p.kind == Kind::Uniform) return 2;
+  const bool mixed = p.kind == Kind::Mixed;
+  return p.side >= 40 ? (mixed ? 65 : 77) : (mixed ? 27 : 32);
+}
+
+void measureDrag(const HairMesh& start, const std::string& title, const BenchOptions& options,
+                 BenchReport& report) {
+  const auto external = externalVertices(start);
+  std::vector<std::uint32_t> selection;
+  for (std::uint32_t v = 0; v < external.size(); ++v) {
+    if (external[v] && start.vertices()[v].layer > 1) selection.push_back(v);
+    if (selection.size() == 10) break;
+  }
+  const std::vector<double> response = require(dragResponse(start, selection, {}, options.context));
+  HairMesh mesh = start;
+  const double solve = fastestSeconds([&] {
+    mesh = start;
+    for (const std::uint32_t v : selection) mesh.setPosition(v, start.position(v) + Vec3(0.1, 0, 0));
+    (void)require(place(mesh, {}, options.context));
+  });
+  const double move = fastestSeconds([&] {
+    for (std::uint32_t v = 0; v < response.size(); ++v) {
+      mesh.setPosition(v, start.position(v) + response[v] * Vec3(0.1, 0, 0));
+    }
+  });
+  report.figures.push_back(
+      {title + ": a solve's time / a move's with the drag response", solve / move, "", Bar::AtLeast, 2});
+}
+
+}  // namespace
+
+BenchReport benchPlace(const BenchOptions& options) {
+  BenchReport report;
+  report.title = "Internal vertex placement";
+  report.about =
+      "Square roots of n by n quads; every vertex above the root is shaken by a quarter of the root's width. "
+      "Mixed "
+      "heights are drawn from the upper half on 5 by 5 patches; split meshes fall into four strips above "
+      "half height. "
+      "Each solver runs at several tolerances on its proven error; the plots show the true error. Ratios in "
+      "the data "
+      "are to plain conjugate gradients at 1e-9.";
+  Tally tally;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{10, 5}, {20, 10}, {40, 20}};
+  if (options.quick) sizes.resize(1);
+  for (const auto& [side, height] : sizes) {
+    for (const Kind kind : {Kind::Uniform, Kind::Mixed, Kind::MixedAndSplit}) {
+      const Problem problem{side, height, kind};
+      const HairMesh start = makeMesh(problem, options.seed);
+      const Truth truth = solveTruth(start, options);
+      BenchPlot plot;
+      plot.name = problem.name();
+      plot.title = problem.title() + " (" + std::to_string(truth.report.unknowns) + " internal vertices)";
+      plot.errorUnit = "of the bounding-box diagonal";
+      plot.truth = std::string(truth.report.solver == PlaceSolver::Direct ? "direct" : "tensor") +
+                   " solver, proven within " + shortNumber(truth.report.error.value);
+      measure(problem, start, truth, options, plot, report, tally);
+      report.figures.push_back({problem.title() + ": tensor iterations to a true error of 1e-9",
+                                double(iterationsTo(1e-9, start, truth, options)), "", Bar::AtMost,
+                                double(iterationBar(problem))});
+      if (kind == Kind::MixedAndSplit) measureDrag(start, problem.title(), options, report);
+      report.plots.push_back(std::move(plot));
+    }
+  }
+  report.figures.push_back(
+      {"true error / reported error, worst of all runs", tally.worstCover, "", Bar::AtMost, 1});
+  std::ranges::sort(tally.overstate);
+  if (!tally.overstate.empty()) {
+    report.figures.push_back(
+        {"reported error / true error, median", tally.overstate[tally.overstate.size() / 2], ""});
+  }
+  // Auto cannot know the fastest in advance; twice its time is what a wrong guess may cost.
+  report.figures.push_back(
+      {"auto's time / the fastest solver's at 1e-9, worst problem", tally.worstAuto, "", Bar::AtMost, 2});
+  return report;
+}
+
+}  // namespace coif
