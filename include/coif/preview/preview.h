@@ -1,0 +1,97 @@
+// Pictures of strands on a head, with or without a window. The only room that knows OpenGL (4.5 core).
+//
+// Strands are camera-facing ribbons of at least one pixel whose alpha carries the missing width; alpha
+// becomes a random sample mask, so nothing is sorted. Each picture is the mean of several sub-frames of four
+// samples.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "coif/base/result.h"
+#include "coif/hairmesh/hair_mesh.h"
+#include "coif/preview/camera.h"
+#include "coif/preview/image.h"
+#include "coif/scalp/polygon_mesh.h"
+#include "coif/strands/strand_set.h"
+
+namespace coif {
+
+/// A distant light. `direction` points to the light; linear RGB radiance.
+struct Light {
+  Vec3 direction = Vec3::UnitY();
+  Vec3f color = Vec3f::Ones();
+};
+
+/// Key, fill and rim, and the light of the surroundings from above and below.
+struct Lights {
+  Light key{Vec3(-0.55, 0.65, 0.62), Vec3f(2.9f, 2.75f, 2.5f)};
+  Light fill{Vec3(0.85, 0.15, 0.55), Vec3f(0.55f, 0.62f, 0.75f)};
+  Light rim{Vec3(0.55, 0.55, -0.8), Vec3f(2.6f, 2.7f, 2.9f)};
+  Vec3f skyColor = Vec3f(0.55f, 0.58f, 0.64f);
+  Vec3f groundColor = Vec3f(0.20f, 0.18f, 0.17f);
+  bool followCamera =
+      true;  ///< directions are (right, up, towards the eye), up being the camera's; else the scene's
+};
+
+/// What to show. Pointers may be null and must outlive the call.
+struct PreviewScene {
+  const StrandSet* strands = nullptr;
+  const PolygonMesh* head = nullptr;
+  const HairMesh* hairMesh = nullptr;  ///< drawn over the picture: edges and faces, coloured by layer
+  Camera camera;
+  Lights lights;
+};
+
+struct PreviewOptions {
+  int width = 1024, height = 1024;                 ///< pixels, 1 … 8192
+  int subframes = 4;                               ///< 1 … 64, four samples a pixel each
+  Vec3f hairColor = Vec3f(0.23f, 0.115f, 0.055f);  ///< linear RGB where the strands have no colours
+  Vec3f headColor = Vec3f(0.50f, 0.40f, 0.34f);
+  Vec3f backgroundTop = Vec3f(0.20f, 0.215f, 0.24f), backgroundBottom = Vec3f(0.055f, 0.058f, 0.065f);
+  bool transparentBackground = false;  ///< alpha is then the coverage
+  bool shadows = true;
+  bool lod = true;              ///< fewer, wider strands and fewer points where no one could tell
+  std::size_t maxSegments = 0;  ///< with lod: bound on ribbon segments; 0: by the machine
+};
+
+struct Picture {
+  Image image;
+  std::size_t strandsDrawn = 0, segmentsDrawn = 0;
+  std::size_t strandsDropped = 0;  ///< values not finite, or fewer than two points
+  double widthScale = 1;           ///< by how much the level of detail widened the strands
+  double seconds = 0;
+  std::vector<std::string> notes;  ///< a sentence each
+};
+
+/// Owns an OpenGL context of its own; made current on the calling thread during a call and released after.
+/// Use one Preview from one thread at a time.
+class Preview {
+ public:
+  /// A context without a window: a GPU through EGL_EXT_platform_device where there is one, else Mesa's
+  /// surfaceless platform. COIF_PREVIEW_DEVICE=software skips the GPU. Shaders come from the library, or from
+  /// COIF_SHADER_DIR where that is set. Errors: Unsupported (no EGL, no OpenGL 4.5), Malformed (a shader does
+  /// not compile, with its log), NotFound (COIF_SHADER_DIR lacks a file).
+  static Result<Preview> create();
+  Preview(Preview&&) noexcept;
+  Preview& operator=(Preview&&) noexcept;
+  ~Preview();
+
+  /// Same scene, same options, same machine: same bytes. Errors: InvalidArgument (sizes, camera), Degenerate
+  /// (a head that fails validate), TooLarge (the driver's limit), Cancelled. Cost on two cores without a GPU:
+  /// a few seconds for 1024² with 100 000 strands.
+  Result<Picture> render(const PreviewScene& scene, const PreviewOptions& options = {},
+                         const Context& context = {});
+
+  const std::string& renderer() const;  ///< the driver's name for itself
+  bool software() const;
+
+ private:
+  struct Impl;
+  explicit Preview(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace coif

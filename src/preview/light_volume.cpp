@@ -1,0 +1,156 @@
+#include "preview/light_volume.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "coif/base/parallel.h"
+
+namespace coif::preview {
+namespace {
+
+constexpr int kCells = 80;            // along the longest side of the hair's box
+constexpr float kHeadOptical = 2.5f;  // of a cell that the head's surface crosses
+constexpr float kSkyOpacity = 0.45f;  // part of the extinction that the diffuse light of the sky feels
+
+std::size_t cellIndex(const LightVolume& grid, const Vec3& p) {
+  const Vec3 c = (p - grid.lo) / grid.cell;
+  const auto clamped = [](double v, int n) { return std::size_t(std::clamp(int(v), 0, n - 1)); };
+  return (clamped(c.z(), grid.nz) * grid.ny + clamped(c.y(), grid.ny)) * grid.nx + clamped(c.x(), grid.nx);
+}
+
+LightVolume makeGrid(const Box& box) {
+  LightVolume grid;
+  const Vec3 size = box.hi - box.lo;
+  grid.cell = std::max({size.maxCoeff() / kCells, 1e-6 * box.hi.norm(), 1e-12});
+  grid.lo = box.lo - Vec3::Constant(2 * grid.cell);
+  grid.nx = int(size.x() / grid.cell) + 5;
+  grid.ny = int(size.y() / grid.cell) + 5;
+  grid.nz = int(size.z() / grid.cell) + 5;
+  return grid;
+}
+
+std::vector<float> hairOpticalSize(const LightVolume& grid, const StrandGeometry& strands) {
+  std::vector<float> optical(std::size_t(grid.nx) * grid.ny * grid.nz, 0.0f);
+  const double perCell = 0.25 * 3.14159265358979323846 / (grid.cell * grid.cell);
+  for (std::size_t s = 0; s + 1 < strands.starts.size(); ++s) {
+    for (std::uint32_t i = strands.starts[s]; i + 1 < strands.starts[s + 1]; ++i) {
+      const StrandPoint &a = strands.points[i], &b = strands.points[i + 1];
+      const Vec3 from = a.position.cast<double>(), d = b.position.cast<double>() - from;
+      const double length = d.norm();
+      const int steps = 1 + int(std::min(length / (0.7 * grid.cell), 1000.0));
+      const float amount = float(perCell * 0.5 * (double(a.width) + b.width) * length / steps);
+      for (int k = 0; k < steps; ++k) optical[cellIndex(grid, from + d * ((k + 0.5) / steps))] += amount;
+    }
+  }
+  return optical;
+}
+
+void addHead(const LightVolume& grid, const PolygonMesh& head, std::vector<float>& optical) {
+  const Vec3 hi = grid.lo + grid.extent();
+  for (std::size_t f = 0; f < head.faceCount(); ++f) {
+    const auto face = head.face(f);
+    for (std::size_t t = 1; t + 1 < face.size(); ++t) {
+      const Vec3 a = head.positions[face[0]], u = head.positions[face[t]] - a,
+                 v = head.positions[face[t + 1]] - a;
+      const int steps = 1 + int(std::min(std::max(u.norm(), v.norm()) / (0.6 * grid.cell), 500.0));
+      for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+          const Vec3 p = a + u * (double(i) / steps) + v * (double(j) / steps);
+          if ((p.array() < grid.lo.array()).any() || (p.array() >= hi.array()).any()) continue;
+          float& cell = optical[cellIndex(grid, p)];
+          cell = std::max(cell, kHeadOptical);
+        }
+      }
+    }
+  }
+}
+
+// Directions of the sky about `up`: a ring low, a ring high, and the middle.
+std::vector<Vec3> skyDirections(const Vec3& up) {
+  const Vec3 a = up.unitOrthogonal(), b = up.cross(a);
+  std::vector<Vec3> result{up};
+  for (int k = 0; k < 5; ++k) {
+    const double w = 2 * 3.14159265358979323846 * k / 5;
+    result.push_back((0.75 * up + 0.66 * (std::cos(w) * a + std::sin(w) * b)).normalized());
+    result.push_back((0.1 * up + std::cos(w + 0.6) * a + std::sin(w + 0.6) * b).normalized());
+  }
+  return result;
+}
+
+void light(LightVolume& grid, std::span<const float> optical, const Vec3 (&lights)[3], const Vec3& up,
+           const Context& context) {
+  grid.values.assign(optical.size(), Vec4f::Zero());
+  for (int l = 0; l < 3; ++l) {
+    const auto depth = sweepOpticalDepth(grid, optical, lights[l], context);
+    for (std::size_t i = 0; i < depth.size(); ++i) grid.values[i][l] = depth[i];
+  }
+  const auto sky = skyDirections(up);
+  for (const Vec3& direction : sky) {
+    const auto depth = sweepOpticalDepth(grid, optical, direction, context);
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      grid.values[i][3] += std::exp(-kSkyOpacity * depth[i]) / float(sky.size());
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
+                                     const Vec3& direction, const Context& context) {
+  const std::array<int, 3> size{grid.nx, grid.ny, grid.nz};
+  const std::array<std::size_t, 3> stride{1, std::size_t(grid.nx), std::size_t(grid.nx) * grid.ny};
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double per = 1 / std::max(std::abs(direction[axis]), 1e-9);
+  const double du = direction[u] * per, dv = direction[v] * per;
+  const bool fromHigh = direction[axis] > 0;
+
+  std::vector<float> result(opticalSize.size(), 0.0f);
+  std::vector<float> before(std::size_t(size[u]) * size[v], 0.0f), after(before.size());
+  const auto upstream = [&](double x, double y) {
+    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+    const float fx = float(x - x0), fy = float(y - y0);
+    const auto at = [&](int i, int j) {
+      return i < 0 || j < 0 || i >= size[u] || j >= size[v] ? 0.0f : before[std::size_t(j) * size[u] + i];
+    };
+    return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
+           fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+  };
+  for (int k = 0; k < size[axis]; ++k) {
+    const std::size_t slice = std::size_t(fromHigh ? size[axis] - 1 - k : k) * stride[axis];
+    parallelFor(context, std::size_t(size[v]), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        for (int i = 0; i < size[u]; ++i) {
+          const std::size_t index = slice + j * stride[v] + std::size_t(i) * stride[u];
+          const float in = upstream(i + du, double(j) + dv), own = opticalSize[index] * float(per);
+          result[index] = in + 0.5f * own;
+          after[j * size[u] + i] = in + own;
+        }
+      }
+    });
+    std::swap(before, after);
+  }
+  return result;
+}
+
+LightVolumes makeLightVolumes(const StrandGeometry& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
+                              const Vec3& up, const Context& context) {
+  LightVolumes result;
+  if (strands.points.empty()) return result;
+  result.hairOnly = makeGrid(strands.box);
+  result.withHead = result.hairOnly;
+  std::vector<float> optical = hairOpticalSize(result.hairOnly, strands);
+  light(result.hairOnly, optical, lights, up, context);
+  if (head == nullptr) {
+    result.withHead = result.hairOnly;
+    return result;
+  }
+  addHead(result.withHead, *head, optical);
+  light(result.withHead, optical, lights, up, context);
+  return result;
+}
+
+}  // namespace coif::preview

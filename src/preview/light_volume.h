@@ -1,0 +1,38 @@
+// Hair as a coarse fog: optical depth towards each light and how much of the sky is open.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "preview/strand_geometry.h"
+
+namespace coif::preview {
+
+/// A grid of cubes; index (z · ny + y) · nx + x.
+struct LightVolume {
+  Vec3 lo = Vec3::Zero();
+  double cell = 1;
+  int nx = 1, ny = 1, nz = 1;
+  std::vector<Vec4f> values{Vec4f(0, 0, 0, 1)};  ///< optical depth to three lights; open part of the sky
+
+  Vec3 extent() const { return cell * Vec3(nx, ny, nz); }
+};
+
+struct LightVolumes {
+  LightVolume hairOnly;  ///< for the head's own shading
+  LightVolume withHead;  ///< the head stops light too: for the hair's
+};
+
+/// The extinction of a cell is Σ length · diameter · π/4 over its volume: randomly oriented fibres. Each
+/// direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear in the
+/// number of cells. `lights` are unit vectors towards the light, `up` the sky's middle. Deterministic for any
+/// number of threads.
+LightVolumes makeLightVolumes(const StrandGeometry& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
+                              const Vec3& up, const Context& context);
+
+/// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.
+std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
+                                     const Vec3& direction, const Context& context);
+
+}  // namespace coif::preview

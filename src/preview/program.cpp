@@ -1,0 +1,101 @@
+#include "preview/program.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "preview/shader_files.h"
+
+namespace coif::preview {
+namespace {
+
+Result<std::string> rawText(const std::string& name) {
+  if (const char* folder = std::getenv("COIF_SHADER_DIR"); folder != nullptr && *folder != '\0') {
+    std::ifstream file(std::string(folder) + "/" + name, std::ios::binary);
+    std::ostringstream text;
+    if (!file || !(text << file.rdbuf())) {
+      return makeError(ErrorCode::NotFound, "the shader folder COIF_SHADER_DIR has no such file", {}, name);
+    }
+    return text.str();
+  }
+  for (const ShaderFile& file : embeddedShaders()) {
+    if (file.name == name) return std::string(file.text);
+  }
+  return makeError(ErrorCode::NotFound, "there is no such shader in the library", {}, name);
+}
+
+Status expand(const std::string& name, std::set<std::string>& seen, std::string& out) {
+  if (!seen.insert(name).second) return {};
+  COIF_ASSIGN(const std::string text, rawText(name));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view kInclude = "#include \"";
+    if (line.starts_with(kInclude)) {
+      COIF_TRY(expand(line.substr(kInclude.size(), line.rfind('"') - kInclude.size()), seen, out));
+    } else {
+      out += line + '\n';
+    }
+  }
+  return {};
+}
+
+Result<GLuint> compile(GLenum stage, const std::string& name, std::span<const std::string> defines) {
+  COIF_ASSIGN(const std::string text, shaderText(name, defines));
+  const GLuint shader = glCreateShader(stage);
+  const char* source = text.c_str();
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  GLint ok = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok) return shader;
+  char log[2000] = "";
+  glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+  glDeleteShader(shader);
+  return makeError(ErrorCode::Malformed, std::string("the shader does not compile: ") + log, {}, name);
+}
+
+}  // namespace
+
+std::span<const ProgramSource> allPrograms() {
+  static const std::vector<ProgramSource> programs = {
+      {"fullscreen.vert", "backdrop.frag", {}},         {"head.vert", "head.frag", {}},
+      {"strand.vert", "strand.frag", {"SHADOWS"}},      {"strand.vert", "strand.frag", {}},
+      {"shadow_head.vert", "shadow_depth.frag", {}},    {"shadow_strand.vert", "shadow_depth.frag", {}},
+      {"shadow_strand.vert", "shadow_layers.frag", {}}, {"overlay.vert", "overlay.frag", {}},
+      {"fullscreen.vert", "resolve.frag", {}},          {"fullscreen.vert", "finish.frag", {}},
+  };
+  return programs;
+}
+
+Result<std::string> shaderText(const std::string& name, std::span<const std::string> defines) {
+  std::string text = "#version 450 core\n";
+  for (const std::string& define : defines) text += "#define " + define + '\n';
+  std::set<std::string> seen;
+  COIF_TRY(expand(name, seen, text));
+  return text;
+}
+
+Result<Program> buildProgram(const ProgramSource& source) {
+  COIF_ASSIGN(const GLuint vertex, compile(GL_VERTEX_SHADER, source.vertex, source.defines));
+  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, source.fragment, source.defines);
+  if (!fragment.ok()) {
+    glDeleteShader(vertex);
+    return fragment.error();
+  }
+  Program program(glCreateProgram());
+  glAttachShader(program.name(), vertex);
+  glAttachShader(program.name(), *fragment);
+  glLinkProgram(program.name());
+  glDeleteShader(vertex);
+  glDeleteShader(*fragment);
+  GLint ok = 0;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &ok);
+  if (ok) return program;
+  char log[2000] = "";
+  glGetProgramInfoLog(program.name(), sizeof log, nullptr, log);
+  return makeError(ErrorCode::Malformed, std::string("the program does not link: ") + log, {},
+                   source.vertex + " + " + source.fragment);
+}
+
+}  // namespace coif::preview

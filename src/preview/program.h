@@ -1,0 +1,41 @@
+// GLSL programs from the files in shaders/.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coif/base/result.h"
+#include "preview/gl_objects.h"
+
+namespace coif::preview {
+
+/// One program: its files and the macros that choose the permutation.
+struct ProgramSource {
+  std::string vertex, fragment;      ///< file names in shaders/
+  std::vector<std::string> defines;  ///< "NAME" or "NAME value"
+};
+
+/// Every program and permutation that the room uses; passes name theirs by index in this list.
+enum class ProgramId {
+  Backdrop,
+  Head,
+  Strands,
+  StrandsPlain,
+  ShadowHead,
+  ShadowFront,
+  ShadowLayers,
+  Overlay,
+  Resolve,
+  Finish
+};
+std::span<const ProgramSource> allPrograms();
+
+/// A shader's whole text: from COIF_SHADER_DIR where set, else embedded; `#include "name"` lines expanded
+/// once a file, the macros put after #version. Errors: NotFound.
+Result<std::string> shaderText(const std::string& name, std::span<const std::string> defines);
+
+/// Compiles and links. Errors: NotFound, Malformed with the driver's log and the file's name.
+Result<Program> buildProgram(const ProgramSource& source);
+
+}  // namespace coif::preview
