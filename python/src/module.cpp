@@ -1,0 +1,18 @@
+// The extension module coif._coif: one binding unit a room, in the order of the rooms.
+#include "bind.h"
+
+NB_MODULE(_coif, m) {
+  using namespace coif::python;
+  m.doc() = "Hair modelling with hair meshes: the C++ library's bindings. Import `coif`.";
+  bindBase(m);
+  bindScalp(m);
+  bindHairMesh(m);
+  bindPlace(m);
+  bindStrands(m);
+#ifdef COIF_WITH_SCENE
+  bindScene(m);
+#endif
+#ifdef COIF_WITH_PREVIEW
+  bindPreview(m);
+#endif
+}
