@@ -1,0 +1,38 @@
+// What Python sees as coif.HairMesh.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "bind.h"
+#include "coif/hairmesh/hair_mesh.h"
+#include "coif/hairmesh/history.h"
+#include "coif/scalp/surface.h"
+
+namespace coif::python {
+
+/// A hair mesh with its history, and the scalp that it was laid on (where there is one). Python names vertices and
+/// bundles by id; the C++ library by index or id: the conversions are here.
+class HairMeshModel {
+ public:
+  HairMeshModel() = default;
+  explicit HairMeshModel(HairMesh mesh) : history_(std::move(mesh)) {}
+
+  const HairMesh& mesh() const { return history_.mesh(); }
+  void change(const char* what, HairMesh next) { history_.record(what, std::move(next)); }
+  History& history() { return history_; }
+  const History& history() const { return history_; }
+
+  /// Indices of vertex ids; Error naming the first id that does not exist.
+  std::vector<std::uint32_t> vertexIndices(const ArrayLike& ids, const char* argument) const;
+  std::uint32_t bundleIndex(std::uint32_t id) const;
+
+  std::shared_ptr<const Surface> head;  ///< the surface that grow() lays roots on unless told otherwise
+  double metersPerUnit = 0.01;
+  UpAxis upAxis = UpAxis::Y;
+
+ private:
+  History history_;
+};
+
+}  // namespace coif::python
