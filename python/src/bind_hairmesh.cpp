@@ -12,8 +12,6 @@ namespace coif::python {
 
 using namespace nb::literals;
 
-void bindOperations(nb::class_<HairMeshModel>& c);
-
 std::vector<std::uint32_t> HairMeshModel::vertexIndices(const ArrayLike& ids, const char* argument) const {
   auto indices = toIndices(ids, argument);
   for (auto& index : indices) {
@@ -224,6 +222,7 @@ void bindReading(nb::class_<Model>& c) {
 
 void bindHairMesh(nb::module_& m) {
   bindBundle(m);
+  bindCreated(m);
   nb::class_<Model> c(m, "HairMesh",
                       "The hair mesh: layers of polygons over a root layer, one column of faces (a bundle) a root face.\n\n"
                       "Vertices and bundles have persistent ids, plain integers here. A face is (bundle, layer), an edge\n"

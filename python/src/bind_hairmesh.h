@@ -35,4 +35,7 @@ class HairMeshModel {
   History history_;
 };
 
+void bindCreated(nb::module_& m);
+void bindOperations(nb::class_<HairMeshModel>& c);
+
 }  // namespace coif::python

@@ -12,9 +12,6 @@ namespace coif::python {
 
 using namespace nb::literals;
 
-void bindOperations(nb::class_<HairMeshModel>& c);
-void bindCreated(nb::module_& m);
-
 namespace {
 
 using Model = HairMeshModel;

@@ -200,7 +200,7 @@ void bindStrandSet(nb::module_& m) {
             what.frames.push_back({double(f), std::span(rows, points)});
           }
         }
-        return Run(threads, std::move(progress))([&](const Context& c) { return saveStrands(what, path, c); });
+        return Run(threads, std::move(progress))([&](const Context& context) { return saveStrands(what, path, context); });
       },
       "path"_a, nb::kw_only(), "hair_mesh"_a.none() = nb::none(), "head"_a.none() = nb::none(),
       "mesh"_a = StrandMesh::Cards, "mesh_strand_limit"_a = StrandExport{}.meshStrandLimit,

@@ -9,9 +9,7 @@ NB_MODULE(_coif, m) {
   bindHairMesh(m);
   bindPlace(m);
   bindStrands(m);
-#ifdef COIF_WITH_SCENE
   bindScene(m);
-#endif
 #ifdef COIF_WITH_PREVIEW
   bindPreview(m);
 #endif

@@ -1,0 +1,195 @@
+// The scene room: the .coif document and its lazy evaluation.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/set.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <mutex>
+
+#include "bind.h"
+#include "bind_hairmesh.h"
+#include "bind_strands.h"
+#include "coif/scene/evaluate.h"
+#include "coif/scene/scene.h"
+
+namespace coif::python {
+
+using namespace nb::literals;
+
+namespace {
+
+/// A document and the results of its last evaluation. The mutex is taken without the interpreter lock: two threads
+/// that evaluate one scene wait for each other.
+class SceneModel {
+ public:
+  explicit SceneModel(Scene s) : scene(std::move(s)) {}
+
+  template <class Use>
+  auto use(const EvaluateOptions& options, int threads, nb::object progress, Use&& use) {
+    const Scene snapshot = scene;  // another thread may edit the document meanwhile
+    return Run(threads, std::move(progress))([&](const Context& context) {
+      const std::scoped_lock lock(busy_);
+      if (!evaluation_ || !same(options, options_)) evaluation_.emplace(options), options_ = options;
+      evaluation_->clearReports();
+      auto result = use(*evaluation_, snapshot, context);
+      reports_ = evaluation_->reports();
+      return result;
+    });
+  }
+  std::vector<StageReport> reports() {
+    const nb::gil_scoped_release unlocked;
+    const std::scoped_lock lock(busy_);
+    return reports_;
+  }
+
+  Scene scene;
+
+ private:
+  static bool same(const EvaluateOptions& a, const EvaluateOptions& b) {
+    return a.useHead == b.useHead && a.force == b.force;
+  }
+  std::mutex busy_;
+  std::optional<Evaluation> evaluation_;
+  EvaluateOptions options_;
+  std::vector<StageReport> reports_;
+};
+
+EvaluateOptions optionsOf(bool useHead, std::set<std::string> force) {
+  EvaluateOptions options;
+  options.useHead = useHead;
+  options.force = std::move(force);
+  return options;
+}
+
+Strands evaluate(SceneModel& model, bool useHead, std::set<std::string> force, int threads, nb::object progress) {
+  return model.use(optionsOf(useHead, std::move(force)), threads, std::move(progress),
+                   [](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<Strands> {
+                     const auto strands = evaluation.strands(scene, context);
+                     if (!strands.ok()) return strands.error();
+                     Strands copy{**strands, {}};
+                     if (const GrowReport* report = evaluation.growReport()) copy.report = *report;
+                     return copy;
+                   });
+}
+
+WriteReport exportScene(SceneModel& model, const std::filesystem::path& path, StrandMesh mesh, bool useHead,
+                        int threads, nb::object progress) {
+  return model.use(optionsOf(useHead, {}), threads, std::move(progress),
+                   [&](Evaluation& evaluation, const Scene& scene, const Context& context) {
+                     StrandExport what;
+                     what.mesh = mesh;
+                     return evaluation.exportTo(scene, path, what, context);
+                   });
+}
+
+HairMeshModel placedMesh(SceneModel& model) {
+  HairMesh mesh = model.use({}, 0, nb::none(),
+                            [](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<HairMesh> {
+                              const auto placed = evaluation.placedMesh(scene, context);
+                              if (!placed.ok()) return placed.error();
+                              return **placed;
+                            });
+  HairMeshModel result(std::move(mesh));
+  result.metersPerUnit = model.scene.metersPerUnit;
+  result.upAxis = model.scene.upAxis;
+  return result;
+}
+
+void bindSettings(nb::module_& m) {
+  nb::class_<StrandSettings>(m, "StrandSettings", "What a scene asks of grow(), as the .coif file keeps it.")
+      .def_rw("count", &StrandSettings::count, "Strands wanted.")
+      .def_rw("points", &StrandSettings::points, "Points a strand, >= 2.")
+      .def_rw("tolerance", &StrandSettings::tolerance, "> 0: adaptive sampling, chord error in scene units.")
+      .def_rw("seed", &StrandSettings::seed, "Seed of the roots.")
+      .def_rw("knots", &StrandSettings::knots, "Spacing of the spline's knots.")
+      .def_rw("width", &StrandSettings::width, "Root diameter in scene units; 0: 0.08 mm.")
+      .def_rw("tip_width", &StrandSettings::tipWidth, "Tip diameter as a fraction of the root's.")
+      .def("__repr__", [](const StrandSettings& s) {
+        return "<coif.StrandSettings: " + std::to_string(s.count) + " strands of " + std::to_string(s.points) + " points>";
+      });
+}
+
+}  // namespace
+
+void bindScene(nb::module_& m) {
+  bindSettings(m);
+  nb::class_<SceneModel> c(m, "Scene",
+                           "The document: which head, which hair mesh, how strands grow on it. A .coif file.\n\n"
+                           "evaluate() keeps its results: what has not changed is not computed again, and `reports`\n"
+                           "says what each stage did and why.");
+  c.def(
+       "__init__",
+       [](SceneModel* self, const HairMeshModel* hairMesh, const std::filesystem::path& head, const std::string& name) {
+         Scene scene;
+         scene.name = name;
+         scene.head.path = head;
+         if (hairMesh) {
+           scene.hairMesh = hairMesh->mesh();
+           scene.metersPerUnit = hairMesh->metersPerUnit;
+           scene.upAxis = hairMesh->upAxis;
+         }
+         new (self) SceneModel(std::move(scene));
+       },
+       "hair_mesh"_a.none() = nb::none(), "head"_a = "", "name"_a = "",
+       "A new document. head: path of the head's mesh file, or '' for none.")
+      .def_static(
+          "load",
+          [](const std::filesystem::path& path) {
+            // Not by value: the model holds a mutex.
+            return std::make_unique<SceneModel>(take(loadScene(path)));
+          },
+          "path"_a, "Reads a .coif file. Raises Error naming the file and the JSON path of what is wrong.")
+      .def(
+          "save", [](SceneModel& s, const std::filesystem::path& path) { take(saveScene(s.scene, path)); }, "path"_a,
+          "Writes a .coif file; the old one stays whole until the new one is. A relative head path follows the new place.")
+      .def("evaluate", &evaluate, nb::kw_only(), "use_head"_a = true, "force"_a = std::set<std::string>{},
+           "threads"_a = 0, "progress"_a.none() = nb::none(),
+           "Places the hair mesh, lays roots on the head and grows the strands: a StrandSet of its own, free to change.\n\n"
+           "use_head: False leaves roots on the cage and never reads the head. force: names of stages to run although\n"
+           "nothing changed, or {'all'}. The interpreter lock is released. Raises Error.")
+      .def("export", &exportScene, "path"_a, nb::kw_only(), "mesh"_a = StrandMesh::Cards, "use_head"_a = true,
+           "threads"_a = 0, "progress"_a.none() = nb::none(),
+           "Evaluates, and writes strands, hair mesh and head to a .usda, .usdc, .glb, .gltf or .hair file.")
+      .def("placed_mesh", &placedMesh, "The hair mesh with its internal vertices placed (a copy).")
+      .def_prop_ro("reports", &SceneModel::reports, "What each stage of the last evaluation did.")
+      .def(
+          "explain", [](SceneModel& s) { return explainText(s.reports()); }, "The reports as a table for people.");
+  c.def_prop_rw(
+       "hair_mesh",
+       [](const SceneModel& s) {
+         HairMeshModel model(s.scene.hairMesh);
+         model.metersPerUnit = s.scene.metersPerUnit;
+         model.upAxis = s.scene.upAxis;
+         return model;
+       },
+       [](SceneModel& s, const HairMeshModel& mesh) { s.scene.hairMesh = mesh.mesh(); },
+       "The hair mesh. A copy: assign it back after a change.")
+      .def_prop_ro(
+          "strands", [](SceneModel& s) -> StrandSettings& { return s.scene.strands; },
+          nb::rv_policy::reference_internal, "How strands grow; change its fields.")
+      .def_prop_rw(
+          "name", [](const SceneModel& s) { return s.scene.name; },
+          [](SceneModel& s, std::string name) { s.scene.name = std::move(name); }, "Name of the hairstyle.")
+      .def_prop_rw(
+          "head", [](const SceneModel& s) { return s.scene.head.path; },
+          [](SceneModel& s, const std::filesystem::path& path) {
+            s.scene.head.path = path;
+            s.scene.head.contentHash = 0;
+          },
+          "Path of the head's mesh file; a relative one is relative to the .coif file.")
+      .def_prop_rw(
+          "meters_per_unit", [](const SceneModel& s) { return s.scene.metersPerUnit; },
+          [](SceneModel& s, double value) { s.scene.metersPerUnit = value; }, "Metres a scene unit.")
+      .def_prop_rw(
+          "up_axis", [](const SceneModel& s) { return s.scene.upAxis; },
+          [](SceneModel& s, UpAxis axis) { s.scene.upAxis = axis; }, "Which axis points up.")
+      .def_prop_ro("file", [](const SceneModel& s) { return s.scene.file; },
+                   "Where it was loaded from or saved to; '' for a new one.")
+      .def("__repr__", [](const SceneModel& s) {
+        return "<coif.Scene '" + s.scene.name + "': " + std::to_string(s.scene.hairMesh.bundles().size()) + " bundles>";
+      });
+}
+
+}  // namespace coif::python
