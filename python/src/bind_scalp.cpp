@@ -1,6 +1,7 @@
 // The scalp room: polygon meshes, queries on them, and the Scalp that Python scripts start from.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -8,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bind.h"
+#include "bind_scalp.h"
 #include "coif/base/parallel.h"
 #include "coif/io/mesh_io.h"
 #include "coif/scalp/polygon_mesh.h"
@@ -205,6 +206,7 @@ void bindSurface(nb::module_& m) {
 void bindScalp(nb::module_& m) {
   bindPolygonMesh(m);
   bindSurface(m);
+  bindRegions(m);
 }
 
 }  // namespace coif::python
