@@ -165,10 +165,9 @@ void bindScalpClass(nb::module_& m) {
                   "Reads a head from an OBJ, PLY, OFF, STL, GLB, glTF or USD text file.\n\n"
                   "Raises Error naming the file and the line, byte or element.")
       .def_prop_ro(
-          "mesh", [](const ScalpModel& s) -> const PolygonMesh& { return s.surface->mesh(); },
-          nb::rv_policy::reference_internal, "The head's mesh, as it was given. Not to be changed.")
+          "mesh", [](const ScalpModel& s) { return s.surface->mesh(); }, "The head's mesh, as it was given. A copy.")
       .def_prop_ro(
-          "surface", [](const ScalpModel& s) { return std::const_pointer_cast<Surface>(s.surface); },
+          "surface", [](const ScalpModel& s) { return std::const_pointer_cast<Surface>(s.surface); },  // it has no setters
           "Distance and nearest-point queries on the head.")
       .def_ro("path", &ScalpModel::path, "The file it was loaded from; '' for none.")
       .def("report", [](const ScalpModel& s) { return inspect(s.surface->mesh()); },

@@ -194,7 +194,7 @@ void bindSurface(nb::module_& m) {
           },
           "points"_a,
           "Generalised winding number of each of `points` (N×3): about 1 inside, 0 outside (Jacobson et al. 2013).")
-      .def_prop_ro("mesh", &Surface::mesh, nb::rv_policy::reference_internal, "The mesh, as it was given.")
+      .def_prop_ro("mesh", [](const Surface& s) { return s.mesh(); }, "The mesh, as it was given. A copy.")
       .def_prop_ro("size", &Surface::size, "Diagonal of the bounding box.")
       .def("__repr__", [](const Surface& s) {
         return "<coif.Surface: " + std::to_string(s.mesh().faceCount()) + " faces, size " + std::to_string(s.size()) + ">";
