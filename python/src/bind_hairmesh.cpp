@@ -218,6 +218,28 @@ void bindReading(nb::class_<Model>& c) {
       });
 }
 
+void bindHistory(nb::class_<Model>& c) {
+  c.def(
+       "undo",
+       [](Model& m) {
+         std::string label = m.history().undoLabel();
+         m.undo();
+         return label;
+       },
+       "Takes the last step back, exactly, and returns its name. Raises Error when there is none.\n\n"
+       "Every operation, place() and every assignment to positions is a step; their number has no limit.")
+      .def(
+          "redo",
+          [](Model& m) {
+            std::string label = m.history().redoLabel();
+            m.redo();
+            return label;
+          },
+          "Does the last step taken back again, exactly, and returns its name. Raises Error when there is none.")
+      .def_prop_ro("undo_count", [](const Model& m) { return m.history().undoCount(); }, "Steps that undo() can take back.")
+      .def_prop_ro("redo_count", [](const Model& m) { return m.history().redoCount(); }, "Steps that redo() can do again.");
+}
+
 }  // namespace
 
 void bindHairMesh(nb::module_& m) {
@@ -232,6 +254,7 @@ void bindHairMesh(nb::module_& m) {
   bindMaking(c);
   bindReading(c);
   bindOperations(c);
+  bindHistory(c);
 }
 
 }  // namespace coif::python

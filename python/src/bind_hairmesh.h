@@ -16,12 +16,22 @@ namespace coif::python {
 class HairMeshModel {
  public:
   HairMeshModel() = default;
-  explicit HairMeshModel(HairMesh mesh) : history_(std::move(mesh)) {}
+  explicit HairMeshModel(HairMesh mesh) : mesh_(std::move(mesh)) {}
 
-  const HairMesh& mesh() const { return history_.mesh(); }
-  void change(const char* what, HairMesh next) { history_.record(what, std::move(next)); }
-  History& history() { return history_; }
+  const HairMesh& mesh() const { return mesh_; }
   const History& history() const { return history_; }
+  /// Makes `next` the mesh: one step of the history.
+  void change(const char* what, HairMesh next) {
+    history_.record(mesh_, next, what);
+    mesh_ = std::move(next);
+  }
+  /// Runs an operation, which returns a Result: one step of the history, or an exception and no change.
+  template <class Operation>
+  auto apply(const char* what, Operation&& operation) {
+    return take(history_.apply(mesh_, what, std::forward<Operation>(operation)));
+  }
+  void undo() { take(history_.undo(mesh_)); }
+  void redo() { take(history_.redo(mesh_)); }
 
   /// Indices of vertex ids; Error naming the first id that does not exist.
   std::vector<std::uint32_t> vertexIndices(const ArrayLike& ids, const char* argument) const;
@@ -32,6 +42,7 @@ class HairMeshModel {
   UpAxis upAxis = UpAxis::Y;
 
  private:
+  HairMesh mesh_;
   History history_;
 };
 

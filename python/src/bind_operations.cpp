@@ -41,15 +41,6 @@ std::vector<FaceRef> tipFaces(const Model& model, const PyFaces& faces) {
   return out;
 }
 
-/// Runs an operation on a copy and, if it succeeds, makes that the mesh.
-template <class Operation>
-Created apply(Model& model, const char* what, Operation&& operation) {
-  HairMesh next = model.mesh();
-  Created created = take(operation(next));
-  model.change(what, std::move(next));
-  return created;
-}
-
 void bindExtrude(nb::class_<Model>& c) {
   c.def(
        "extrude_faces",
@@ -60,7 +51,7 @@ void bindExtrude(nb::class_<Model>& c) {
          if (direction) options.direction = toVec3(*direction, "direction");
          if (offsets) options.offsets = toPoints(*offsets, "offsets");
          const auto tips = tipFaces(model, faces);
-         return apply(model, "extrude faces", [&](HairMesh& m) { return extrudeFaces(m, tips, options); });
+         return model.apply("extrude faces", [&](HairMesh& m) { return extrudeFaces(m, tips, options); });
        },
        "faces"_a, "distance"_a = 0.0, nb::kw_only(), "direction"_a.none() = nb::none(), "offsets"_a.none() = nb::none(),
        "Grows a new layer face and prism on tip faces: bundle ids or (bundle, layer) pairs.\n\n"
@@ -71,7 +62,7 @@ void bindExtrude(nb::class_<Model>& c) {
           "delete_faces",
           [](Model& model, const PyFaces& faces) {
             const auto tips = tipFaces(model, faces);
-            return apply(model, "delete faces", [&](HairMesh& m) { return deleteFaces(m, tips); });
+            return model.apply("delete faces", [&](HairMesh& m) { return deleteFaces(m, tips); });
           },
           "faces"_a,
           "Removes the tip face and last prism of each bundle (ids or (bundle, layer) pairs); a bundle of height 0 goes\n"
@@ -82,7 +73,7 @@ void bindLayers(nb::class_<Model>& c) {
   c.def(
        "insert_layer",
        [](Model& model, const PyFace& face, double t) {
-         return apply(model, "insert layer", [&](HairMesh& m) { return insertLayer(m, faceRef(face), t); });
+         return model.apply("insert layer", [&](HairMesh& m) { return insertLayer(m, faceRef(face), t); });
        },
        "face"_a, "t"_a = 0.5,
        "A new layer before the layer of `face` (>= 1), for every bundle connected to it there. New vertices lie on the\n"
@@ -90,7 +81,7 @@ void bindLayers(nb::class_<Model>& c) {
       .def(
           "remove_layer",
           [](Model& model, const PyFace& face) {
-            return apply(model, "remove layer", [&](HairMesh& m) { return removeLayer(m, faceRef(face)); });
+            return model.apply("remove layer", [&](HairMesh& m) { return removeLayer(m, faceRef(face)); });
           },
           "face"_a,
           "Removes the layer of `face` (>= 1) for every bundle connected to it there; vertices above get the parents of\n"
@@ -104,7 +95,7 @@ void bindSeams(nb::class_<Model>& c) {
   c.def(
        "separate_edge",
        [](Model& model, const PyEdge& edge) {
-         return apply(model, "separate edge", [&](HairMesh& m) { return separateEdge(m, edgeRef(edge)); });
+         return model.apply("separate edge", [&](HairMesh& m) { return separateEdge(m, edgeRef(edge)); });
        },
        "edge"_a,
        "Separates a shared edge (bundle, layer, side) of layer >= 1, there and on every layer above; nothing moves.\n\n"
@@ -112,7 +103,7 @@ void bindSeams(nb::class_<Model>& c) {
       .def(
           "separate_vertex",
           [](Model& model, std::uint32_t vertex) {
-            return apply(model, "separate vertex", [&](HairMesh& m) { return separateVertex(m, VertexId{vertex}); });
+            return model.apply("separate vertex", [&](HairMesh& m) { return separateVertex(m, VertexId{vertex}); });
           },
           "vertex"_a,
           "Gives every face at a vertex of layer >= 1 a vertex of its own, there and on every layer above.\n\n"
@@ -120,7 +111,7 @@ void bindSeams(nb::class_<Model>& c) {
       .def(
           "weld_edges",
           [](Model& model, const PyEdge& first, const PyEdge& second, WeldPosition where) {
-            return apply(model, "weld edges",
+            return model.apply("weld edges",
                          [&](HairMesh& m) { return weldEdges(m, edgeRef(first), edgeRef(second), where); });
           },
           "first"_a, "second"_a, "where"_a = WeldPosition::Average,
@@ -129,7 +120,7 @@ void bindSeams(nb::class_<Model>& c) {
       .def(
           "weld_vertices",
           [](Model& model, std::uint32_t first, std::uint32_t second, WeldPosition where) {
-            return apply(model, "weld vertices", [&](HairMesh& m) {
+            return model.apply("weld vertices", [&](HairMesh& m) {
               return weldVertices(m, VertexId{first}, VertexId{second}, where);
             });
           },
@@ -149,7 +140,7 @@ void bindDivision(nb::class_<Model>& c) {
   c.def(
        "divide_face",
        [](Model& model, std::uint32_t bundle, const Point& from, const Point& to) {
-         return apply(model, "divide face", [&](HairMesh& m) {
+         return model.apply("divide face", [&](HairMesh& m) {
            return divideFace(m, BundleId{bundle}, facePoint(from), facePoint(to));
          });
        },
@@ -160,7 +151,7 @@ void bindDivision(nb::class_<Model>& c) {
       .def(
           "divide_edge",
           [](Model& model, const PyEdge& edge, double t) {
-            return apply(model, "divide edge", [&](HairMesh& m) { return divideEdge(m, edgeRef(edge), t); });
+            return model.apply("divide edge", [&](HairMesh& m) { return divideEdge(m, edgeRef(edge), t); });
           },
           "edge"_a, "t"_a = 0.5,
           "Inserts a vertex at t in (0, 1) along a root edge and all its copies, in every bundle that has the edge.\n\n"
@@ -168,7 +159,7 @@ void bindDivision(nb::class_<Model>& c) {
       .def(
           "dissolve_edge",
           [](Model& model, const PyEdge& edge) {
-            return apply(model, "dissolve edge", [&](HairMesh& m) { return dissolveEdge(m, edgeRef(edge)); });
+            return model.apply("dissolve edge", [&](HairMesh& m) { return dissolveEdge(m, edgeRef(edge)); });
           },
           "edge"_a,
           "The inverse of divide_face: merges the two bundles of an edge that they share on every layer. The lower id\n"
@@ -176,7 +167,7 @@ void bindDivision(nb::class_<Model>& c) {
       .def(
           "dissolve_vertex",
           [](Model& model, std::uint32_t vertex) {
-            return apply(model, "dissolve vertex", [&](HairMesh& m) { return dissolveVertex(m, VertexId{vertex}); });
+            return model.apply("dissolve vertex", [&](HairMesh& m) { return dissolveVertex(m, VertexId{vertex}); });
           },
           "vertex"_a, "The inverse of divide_edge: removes a root vertex between just two root edges, and its column.")
       .def(
@@ -186,7 +177,7 @@ void bindDivision(nb::class_<Model>& c) {
             if (bundles && ids.empty()) {
               throw ErrorException(makeError(ErrorCode::InvalidArgument, "no bundle is selected"));
             }
-            return apply(model, "subdivide", [&](HairMesh& m) { return subdivide(m, ids, scheme); });
+            return model.apply("subdivide", [&](HairMesh& m) { return subdivide(m, ids, scheme); });
           },
           "bundles"_a.none() = nb::none(), "scheme"_a = SubdivisionScheme::CatmullClark,
           "Refines bundles (all for None) once, on every layer alike, by OpenSubdiv. Bundles beyond the selection get the\n"
