@@ -45,10 +45,11 @@ inline void take(Status status) {
   if (!status.ok()) throw ErrorException(status.error());
 }
 
-// ---- arrays in -------------------------------------------------------------------------------------------------
+// ---- arrays in
+// -------------------------------------------------------------------------------------------------
 
-/// Any object that NumPy turns into an array. Conversion happens in the functions below, which name the argument
-/// in their ValueError.
+/// Any object that NumPy turns into an array. Conversion happens in the functions below, which name the
+/// argument in their ValueError.
 struct ArrayLike {
   nb::object object;
 };
@@ -63,7 +64,8 @@ InputArray<T> toArray(const ArrayLike& value, const char* argument, std::initial
 std::vector<Vec3> toPoints(const ArrayLike& value, const char* argument);  ///< shape (N, 3)
 Vec3 toVec3(const ArrayLike& value, const char* argument);                 ///< shape (3,)
 
-std::vector<std::uint32_t> toIndices(const ArrayLike& value, const char* argument);  ///< shape (N,), all in range
+std::vector<std::uint32_t> toIndices(const ArrayLike& value,
+                                     const char* argument);  ///< shape (N,), all in range
 
 /// Faces as a sequence of index sequences, or an F×k integer array: offsets (F + 1) and corners.
 struct Faces {
@@ -72,7 +74,8 @@ struct Faces {
 };
 Faces toFaces(nb::handle value, const char* argument);
 
-// ---- arrays out ------------------------------------------------------------------------------------------------
+// ---- arrays out
+// ------------------------------------------------------------------------------------------------
 
 template <class T>
 using Array1 = nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig>;
@@ -110,12 +113,15 @@ inline Array3<double> own3(std::vector<Vec3> values) {
   nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Vec3>*>(p); });
   return view3<double>(owner, kept->empty() ? nullptr : kept->front().data(), kept->size());
 }
-inline Array1<double> own(const Vec3& v) { return own1<double>({v.x(), v.y(), v.z()}); }
+inline Array1<double> own(const Vec3& v) {
+  return own1<double>({v.x(), v.y(), v.z()});
+}
 
-// ---- long computations -----------------------------------------------------------------------------------------
+// ---- long computations
+// -----------------------------------------------------------------------------------------
 
-/// Runs a computation without the interpreter lock. Its Context reports to `progress` (a callable or None) and
-/// stops on Ctrl-C or when the callable raises; that exception then reaches the caller.
+/// Runs a computation without the interpreter lock. Its Context reports to `progress` (a callable or None)
+/// and stops on Ctrl-C or when the callable raises; that exception then reaches the caller.
 class Run {
  public:
   Run(int threads, nb::object progress);

@@ -13,7 +13,7 @@ namespace coif::python {
 
 namespace {
 
-nb::handle errorClass;     // borrowed from the module, which lives as long as the interpreter
+nb::handle errorClass;  // borrowed from the module, which lives as long as the interpreter
 nb::handle argumentClass;
 nb::handle missingClass;
 
@@ -29,7 +29,8 @@ void bindErrors(nb::module_& m) {
   nb::enum_<ErrorCode>(m, "ErrorCode", "The kinds of fault that coif.Error carries.")
       .value("INVALID_ARGUMENT", ErrorCode::InvalidArgument, "a parameter is outside its stated range")
       .value("NOT_FOUND", ErrorCode::NotFound, "a file, group or id that does not exist")
-      .value("UNREADABLE", ErrorCode::Unreadable, "the file system refused: permissions, disk full, a directory")
+      .value("UNREADABLE", ErrorCode::Unreadable,
+             "the file system refused: permissions, disk full, a directory")
       .value("MALFORMED", ErrorCode::Malformed, "the bytes break their format")
       .value("UNSUPPORTED", ErrorCode::Unsupported, "well formed, but of a kind that Coif does not read")
       .value("DEGENERATE", ErrorCode::Degenerate, "geometry that cannot carry hair")
@@ -50,6 +51,9 @@ void bindErrors(nb::module_& m) {
   });
 }
 
+/// str(object).
+std::string textOf(nb::handle object) { return nb::str(object).c_str(); }
+
 std::string shapeText(std::initializer_list<int> shape) {
   std::string text = "(";
   for (const int n : shape) text += (text.size() > 1 ? ", " : "") + (n < 0 ? "N" : std::to_string(n));
@@ -67,24 +71,26 @@ constexpr const char* kTypeName<std::int64_t> = "int64";
 template <>
 constexpr const char* kTypeName<std::uint64_t> = "uint64";
 
-/// `value` as a NumPy array of T, or a ValueError (TypeError for fractions as indices) that names the argument.
+/// `value` as a NumPy array of T, or a ValueError (TypeError for fractions as indices) that names the
+/// argument.
 template <class T>
 nb::object asNumpy(const ArrayLike& value, const char* argument) {
   const nb::module_ numpy = nb::module_::import_("numpy");
   try {
     nb::object array = numpy.attr("asarray")(value.object);
-    const bool numeric = std::string("biuf").find(nb::cast<char>(array.attr("dtype").attr("kind"))) != std::string::npos;
+    const bool numeric =
+        std::string("biuf").find(nb::cast<char>(array.attr("dtype").attr("kind"))) != std::string::npos;
     const bool fraction = nb::cast<char>(array.attr("dtype").attr("kind")) == 'f';
     if (!numeric || (std::is_integral_v<T> && fraction && nb::cast<std::size_t>(array.attr("size")) > 0)) {
       const std::string message = std::string(argument) + ": expected numbers" +
                                   (std::is_integral_v<T> ? " that are integers" : "") + ", got an array of " +
-                                  nb::str(array.attr("dtype")).c_str();
+                                  textOf(nb::object(array.attr("dtype")));
       throw nb::type_error(message.c_str());
     }
     return numpy.attr("asarray")(array, nb::arg("dtype") = kTypeName<T>, nb::arg("order") = "C");
   } catch (nb::python_error& e) {
     if (!e.matches(PyExc_ValueError) && !e.matches(PyExc_TypeError) && !e.matches(PyExc_OverflowError)) throw;
-    throw nb::value_error((std::string(argument) + ": " + nb::str(e.value()).c_str()).c_str());
+    throw nb::value_error((std::string(argument) + ": " + textOf(e.value())).c_str());
   }
 }
 
@@ -101,7 +107,7 @@ InputArray<T> toArray(const ArrayLike& value, const char* argument, std::initial
   }
   if (!fits) {
     const std::string message = std::string(argument) + ": expected an array of shape " + shapeText(shape) +
-                                ", got " + nb::str(found).c_str();
+                                ", got " + textOf(found);
     throw nb::value_error(message.c_str());
   }
   return nb::cast<InputArray<T>>(array);

@@ -18,7 +18,8 @@ std::vector<std::uint32_t> HairMeshModel::vertexIndices(const ArrayLike& ids, co
     const std::uint32_t id = index;
     index = mesh().indexOf(VertexId{id});
     if (index == kNone) {
-      throw ErrorException(makeError(ErrorCode::NotFound, "there is no such vertex", "vertex " + std::to_string(id)));
+      throw ErrorException(
+          makeError(ErrorCode::NotFound, "there is no such vertex", "vertex " + std::to_string(id)));
     }
   }
   return indices;
@@ -27,7 +28,8 @@ std::vector<std::uint32_t> HairMeshModel::vertexIndices(const ArrayLike& ids, co
 std::uint32_t HairMeshModel::bundleIndex(std::uint32_t id) const {
   const std::uint32_t index = mesh().indexOf(BundleId{id});
   if (index == kNone) {
-    throw ErrorException(makeError(ErrorCode::NotFound, "there is no such bundle", "bundle " + std::to_string(id)));
+    throw ErrorException(
+        makeError(ErrorCode::NotFound, "there is no such bundle", "bundle " + std::to_string(id)));
   }
   return index;
 }
@@ -36,7 +38,9 @@ namespace {
 
 using Model = HairMeshModel;
 
-std::uint32_t idOf(const HairMesh& mesh, std::uint32_t vertex) { return std::uint32_t(mesh.vertices()[vertex].id); }
+std::uint32_t idOf(const HairMesh& mesh, std::uint32_t vertex) {
+  return std::uint32_t(mesh.vertices()[vertex].id);
+}
 
 /// One value a vertex, as an array.
 template <class Read>
@@ -62,7 +66,8 @@ struct BundleView {
 };
 
 BundleView viewOf(const HairMesh& mesh, const Bundle& bundle) {
-  BundleView view{std::uint32_t(bundle.id), bundle.corners, bundle.height(), mesh.groupNames()[bundle.group], {}};
+  BundleView view{
+      std::uint32_t(bundle.id), bundle.corners, bundle.height(), mesh.groupNames()[bundle.group], {}};
   for (const std::uint32_t v : bundle.vertices) view.vertices.push_back(idOf(mesh, v));
   return view;
 }
@@ -74,16 +79,18 @@ nb::ndarray<nb::numpy, std::uint32_t, nb::ndim<2>, nb::c_contig> verticesOf(cons
 }
 
 void bindBundle(nb::module_& m) {
-  nb::class_<BundleView>(m, "Bundle", "One column of faces over a root face, as it was when it was asked for (a copy).")
+  nb::class_<BundleView>(m, "Bundle",
+                         "One column of faces over a root face, as it was when it was asked for (a copy).")
       .def_ro("id", &BundleView::id, "Persistent id.")
       .def_ro("corners", &BundleView::corners, "Corners of each of its faces.")
       .def_ro("height", &BundleView::height, "Layers above the root: its tip face is on this layer.")
       .def_ro("group", &BundleView::group, "Name of its group.")
-      .def_prop_ro("vertices", &verticesOf,
-                   "Vertex ids, (height + 1)×corners uint32: row k is the face on layer k, corner i over corner i.")
+      .def_prop_ro(
+          "vertices", &verticesOf, nb::rv_policy::reference,
+          "Vertex ids, (height + 1)×corners uint32: row k is the face on layer k, corner i over corner i.")
       .def("__repr__", [](const BundleView& b) {
-        return "<coif.Bundle " + std::to_string(b.id) + ": " + std::to_string(b.corners) + " corners, height " +
-               std::to_string(b.height) + ">";
+        return "<coif.Bundle " + std::to_string(b.id) + ": " + std::to_string(b.corners) +
+               " corners, height " + std::to_string(b.height) + ">";
       });
 }
 
@@ -102,7 +109,8 @@ void setPositions(Model& model, const ArrayLike& positions) {
   model.change("move", std::move(next));
 }
 
-std::tuple<nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 4>, nb::c_contig>, Array1<bool>> quadsOf(const Model& model) {
+std::tuple<nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 4>, nb::c_contig>, Array1<bool>> quadsOf(
+    const Model& model) {
   auto* ids = new std::vector<std::uint32_t>;
   nb::capsule owner(ids, [](void* p) noexcept { delete static_cast<std::vector<std::uint32_t>*>(p); });
   std::vector<std::uint8_t> exposed;
@@ -122,20 +130,29 @@ void bindMaking(nb::class_<Model>& c) {
          return Model(take(HairMesh::fromRoot(points, root.offsets, root.corners)));
        },
        "positions"_a, "faces"_a,
-       "The root layer alone, every bundle of height 0: positions V×3 and faces, a sequence of index sequences or an\n"
-       "F×k integer array. Vertices that no face uses are dropped; where faces only touch in a vertex it is split.\n\n"
-       "Raises Error for edges of three or more faces, inconsistent winding, indices out of range or values not finite.")
-      .def("copy", [](const Model& model) { return Model(model); }, "A copy with a history of its own.")
+       "The root layer alone, every bundle of height 0: positions V×3 and faces, a sequence of index "
+       "sequences or an\n"
+       "F×k integer array. Vertices that no face uses are dropped; where faces only touch in a vertex it is "
+       "split.\n\n"
+       "Raises Error for edges of three or more faces, inconsistent winding, indices out of range or values "
+       "not finite.")
+      .def(
+          "copy", [](const Model& model) { return Model(model); }, "A copy with a history of its own.")
       .def("__copy__", [](const Model& model) { return Model(model); })
-      .def("__deepcopy__", [](const Model& model, nb::handle) { return Model(model); }, "memo"_a)
-      .def("__eq__", [](const Model& a, const Model& b) { return a.mesh() == b.mesh(); }, nb::is_operator());
+      .def(
+          "__deepcopy__", [](const Model& model, nb::handle) { return Model(model); }, "memo"_a)
+      .def(
+          "__eq__", [](const Model& a, const Model& b) { return a.mesh() == b.mesh(); }, nb::is_operator());
 }
 
 void bindReading(nb::class_<Model>& c) {
-  c.def_prop_ro("vertex_count", [](const Model& m) { return m.mesh().vertices().size(); }, "Number of vertices, V.")
-      .def_prop_ro("bundle_count", [](const Model& m) { return m.mesh().bundles().size(); }, "Number of bundles, B.")
-      .def_prop_ro("layer_count", [](const Model& m) { return m.mesh().layerCount(); },
-                   "1 + the height of the tallest bundle; 0 when empty.")
+  c.def_prop_ro(
+       "vertex_count", [](const Model& m) { return m.mesh().vertices().size(); }, "Number of vertices, V.")
+      .def_prop_ro(
+          "bundle_count", [](const Model& m) { return m.mesh().bundles().size(); }, "Number of bundles, B.")
+      .def_prop_ro(
+          "layer_count", [](const Model& m) { return m.mesh().layerCount(); },
+          "1 + the height of the tallest bundle; 0 when empty.")
       .def_prop_rw(
           "positions",
           [](const Model& m) {
@@ -143,15 +160,17 @@ void bindReading(nb::class_<Model>& c) {
             for (const HairVertex& v : m.mesh().vertices()) p.push_back(v.position);
             return own3(std::move(p));
           },
-          &setPositions,
-          "Positions, V×3 float64, in the order of vertex_ids. A copy: assign the whole array to move vertices (one\n"
+          &setPositions, nb::rv_policy::reference,
+          "Positions, V×3 float64, in the order of vertex_ids. A copy: assign the whole array to move "
+          "vertices (one\n"
           "step of the history).")
       .def_prop_ro(
-          "vertex_ids", [](const Model& m) { return perVertex(m, [](auto& v) { return std::uint32_t(v.id); }); },
-          "Persistent vertex ids, V uint32, ascending. A copy.")
+          "vertex_ids",
+          [](const Model& m) { return perVertex(m, [](auto& v) { return std::uint32_t(v.id); }); },
+          nb::rv_policy::reference, "Persistent vertex ids, V uint32, ascending. A copy.")
       .def_prop_ro(
           "layers", [](const Model& m) { return perVertex(m, [](auto& v) { return v.layer; }); },
-          "Layer of each vertex, V uint32; 0 is the root. A copy.")
+          nb::rv_policy::reference, "Layer of each vertex, V uint32; 0 is the root. A copy.")
       .def_prop_ro(
           "parents",
           [](const Model& m) {
@@ -159,6 +178,7 @@ void bindReading(nb::class_<Model>& c) {
               return v.parent == kNone ? -1 : std::int64_t(idOf(m.mesh(), v.parent));
             });
           },
+          nb::rv_policy::reference,
           "Id of each vertex's parent, one layer down, V int64; -1 on layer 0. A copy.")
       .def_prop_ro(
           "pinned",
@@ -167,10 +187,12 @@ void bindReading(nb::class_<Model>& c) {
             for (const HairVertex& v : m.mesh().vertices()) values.push_back(v.pinned);
             return flags(values);
           },
-          "Which vertices the artist has pinned, V bool. A copy; see set_pinned.")
+          nb::rv_policy::reference, "Which vertices the artist has pinned, V bool. A copy; see set_pinned.")
       .def_prop_ro(
           "external", [](const Model& m) { return flags(externalVertices(m.mesh())); },
-          "Which vertices the artist places (root, tip, boundary, exposed or pinned), V bool; place() moves the others.")
+          nb::rv_policy::reference,
+          "Which vertices the artist places (root, tip, boundary, exposed or pinned), V bool; place() moves "
+          "the others.")
       .def_prop_ro(
           "bundle_ids",
           [](const Model& m) {
@@ -178,10 +200,12 @@ void bindReading(nb::class_<Model>& c) {
             for (const Bundle& b : m.mesh().bundles()) ids.push_back(std::uint32_t(b.id));
             return own1(std::move(ids));
           },
-          "Persistent bundle ids, B uint32, ascending. A copy.")
+          nb::rv_policy::reference, "Persistent bundle ids, B uint32, ascending. A copy.")
       .def(
           "bundle",
-          [](const Model& m, std::uint32_t id) { return viewOf(m.mesh(), m.mesh().bundles()[m.bundleIndex(id)]); },
+          [](const Model& m, std::uint32_t id) {
+            return viewOf(m.mesh(), m.mesh().bundles()[m.bundleIndex(id)]);
+          },
           "id"_a, "The bundle of that id. Raises Error when there is none.")
       .def_prop_ro(
           "bundles",
@@ -197,10 +221,13 @@ void bindReading(nb::class_<Model>& c) {
             return std::vector<std::string>(m.mesh().groupNames().begin(), m.mesh().groupNames().end());
           },
           "Names of the groups.")
-      .def("indices", [](const Model& m, const ArrayLike& ids) { return own1(m.vertexIndices(ids, "ids")); }, "ids"_a,
-           "Rows of the per-vertex arrays for vertex ids. Raises Error for an id that does not exist.")
+      .def(
+          "indices", [](const Model& m, const ArrayLike& ids) { return own1(m.vertexIndices(ids, "ids")); },
+          "ids"_a,
+          "Rows of the per-vertex arrays for vertex ids. Raises Error for an id that does not exist.")
       .def("side_quads", &quadsOf,
-           "Every side quad once: vertex ids Q×4 (a→b below, c over a, d over b) and Q bool, whether it is exposed.")
+           "Every side quad once: vertex ids Q×4 (a→b below, c over a, d over b) and Q bool, whether it is "
+           "exposed.")
       .def(
           "faults",
           [](const Model& m) {
@@ -213,8 +240,8 @@ void bindReading(nb::class_<Model>& c) {
           "Broken invariants, a sentence each; empty for a sound mesh.")
       .def("__repr__", [](const Model& m) {
         return "<coif.HairMesh: " + std::to_string(m.mesh().bundles().size()) + " bundles, " +
-               std::to_string(m.mesh().vertices().size()) + " vertices, " + std::to_string(m.mesh().layerCount()) +
-               " layers>";
+               std::to_string(m.mesh().vertices().size()) + " vertices, " +
+               std::to_string(m.mesh().layerCount()) + " layers>";
       });
 }
 
@@ -235,9 +262,14 @@ void bindHistory(nb::class_<Model>& c) {
             m.redo();
             return label;
           },
-          "Does the last step taken back again, exactly, and returns its name. Raises Error when there is none.")
-      .def_prop_ro("undo_count", [](const Model& m) { return m.history().undoCount(); }, "Steps that undo() can take back.")
-      .def_prop_ro("redo_count", [](const Model& m) { return m.history().redoCount(); }, "Steps that redo() can do again.");
+          "Does the last step taken back again, exactly, and returns its name. Raises Error when there is "
+          "none.")
+      .def_prop_ro(
+          "undo_count", [](const Model& m) { return m.history().undoCount(); },
+          "Steps that undo() can take back.")
+      .def_prop_ro(
+          "redo_count", [](const Model& m) { return m.history().redoCount(); },
+          "Steps that redo() can do again.");
 }
 
 }  // namespace
@@ -245,12 +277,13 @@ void bindHistory(nb::class_<Model>& c) {
 void bindHairMesh(nb::module_& m) {
   bindBundle(m);
   bindCreated(m);
-  nb::class_<Model> c(m, "HairMesh",
-                      "The hair mesh: layers of polygons over a root layer, one column of faces (a bundle) a root face.\n\n"
-                      "Vertices and bundles have persistent ids, plain integers here. A face is (bundle, layer), an edge\n"
-                      "(bundle, layer, side): side i runs from corner i to corner i + 1. Every operation keeps every\n"
-                      "invariant, or raises Error with the reason and changes nothing; all can be undone. Source: Yuksel,\n"
-                      "Schaefer, Keyser, \"Hair Meshes\", 2009.");
+  nb::class_<Model> c(
+      m, "HairMesh",
+      "The hair mesh: layers of polygons over a root layer, one column of faces (a bundle) a root face.\n\n"
+      "Vertices and bundles have persistent ids, plain integers here. A face is (bundle, layer), an edge\n"
+      "(bundle, layer, side): side i runs from corner i to corner i + 1. Every operation keeps every\n"
+      "invariant, or raises Error with the reason and changes nothing; all can be undone. Source: Yuksel,\n"
+      "Schaefer, Keyser, \"Hair Meshes\", 2009.");
   bindMaking(c);
   bindReading(c);
   bindOperations(c);

@@ -11,8 +11,8 @@
 
 namespace coif::python {
 
-/// A hair mesh with its history, and the scalp that it was laid on (where there is one). Python names vertices and
-/// bundles by id; the C++ library by index or id: the conversions are here.
+/// A hair mesh with its history, and the scalp that it was laid on (where there is one). Python names
+/// vertices and bundles by id; the C++ library by index or id: the conversions are here.
 class HairMeshModel {
  public:
   HairMeshModel() = default;

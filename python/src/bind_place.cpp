@@ -55,24 +55,31 @@ void bindPlace(nb::module_& m) {
       },
       "mesh"_a, nb::kw_only(), "solver"_a = PlaceSolver::Auto, "tolerance"_a = PlaceOptions{}.tolerance,
       "max_iterations"_a = PlaceOptions{}.maxIterations, "threads"_a = 0, "progress"_a = nb::none(),
-      "Moves the internal vertices of a HairMesh to where the side quads are least sheared; external and pinned\n"
+      "Moves the internal vertices of a HairMesh to where the side quads are least sheared; external and "
+      "pinned\n"
       "vertices stay bit for bit (Yuksel et al. 2009, section 3.3). Can be undone.\n\n"
-      "tolerance: on the estimated error, in units of the bounding-box diagonal. threads: 0 for all cores; the result\n"
+      "tolerance: on the estimated error, in units of the bounding-box diagonal. threads: 0 for all cores; "
+      "the result\n"
       "does not depend on it. progress: a callable (what: str, fraction: float), which may raise to stop.\n"
-      "Returns a PlaceReport; running out of iterations is reported there, not raised. The interpreter lock is\n"
+      "Returns a PlaceReport; running out of iterations is reported there, not raised. The interpreter lock "
+      "is\n"
       "released. Raises Error for positions that are not finite.");
-  m.def("placement_energy", [](const HairMeshModel& model) { return placementEnergy(model.mesh()); }, "mesh"_a,
-        "Sum over side quads of the squared shear |(c − a) − (d − b)|², scene units squared.");
+  m.def(
+      "placement_energy", [](const HairMeshModel& model) { return placementEnergy(model.mesh()); }, "mesh"_a,
+      "Sum over side quads of the squared shear |(c − a) − (d − b)|², scene units squared.");
   m.def(
       "drag_response",
       [](const HairMeshModel& model, const ArrayLike& vertices) {
         const HairMesh mesh = model.mesh();
         const auto selection = model.vertexIndices(vertices, "vertices");
-        return own1(Run(0, nb::none())([&](const Context& c) { return dragResponse(mesh, selection, {}, c); }));
+        return own1(
+            Run(0, nb::none())([&](const Context& c) { return dragResponse(mesh, selection, {}, c); }));
       },
       "mesh"_a, "vertices"_a,
-      "How far every vertex follows when the external `vertices` (ids) move together: one coefficient a vertex,\n"
-      "1 on the selection, 0 on other external ones. positions += coefficients[:, None] * delta is the exact answer.");
+      "How far every vertex follows when the external `vertices` (ids) move together: one coefficient a "
+      "vertex,\n"
+      "1 on the selection, 0 on other external ones. positions += coefficients[:, None] * delta is the exact "
+      "answer.");
 }
 
 }  // namespace coif::python

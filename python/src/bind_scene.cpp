@@ -20,8 +20,8 @@ using namespace nb::literals;
 
 namespace {
 
-/// A document and the results of its last evaluation. The mutex is taken without the interpreter lock: two threads
-/// that evaluate one scene wait for each other.
+/// A document and the results of its last evaluation. The mutex is taken without the interpreter lock: two
+/// threads that evaluate one scene wait for each other.
 class SceneModel {
  public:
   explicit SceneModel(Scene s) : scene(std::move(s)) {}
@@ -63,7 +63,8 @@ EvaluateOptions optionsOf(bool useHead, std::set<std::string> force) {
   return options;
 }
 
-Strands evaluate(SceneModel& model, bool useHead, std::set<std::string> force, int threads, nb::object progress) {
+Strands evaluate(SceneModel& model, bool useHead, std::set<std::string> force, int threads,
+                 nb::object progress) {
   return model.use(optionsOf(useHead, std::move(force)), threads, std::move(progress),
                    [](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<Strands> {
                      const auto strands = evaluation.strands(scene, context);
@@ -85,12 +86,13 @@ WriteReport exportScene(SceneModel& model, const std::filesystem::path& path, St
 }
 
 HairMeshModel placedMesh(SceneModel& model) {
-  HairMesh mesh = model.use({}, 0, nb::none(),
-                            [](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<HairMesh> {
-                              const auto placed = evaluation.placedMesh(scene, context);
-                              if (!placed.ok()) return placed.error();
-                              return **placed;
-                            });
+  HairMesh mesh =
+      model.use({}, 0, nb::none(),
+                [](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<HairMesh> {
+                  const auto placed = evaluation.placedMesh(scene, context);
+                  if (!placed.ok()) return placed.error();
+                  return **placed;
+                });
   HairMeshModel result(std::move(mesh));
   result.metersPerUnit = model.scene.metersPerUnit;
   result.upAxis = model.scene.upAxis;
@@ -107,7 +109,8 @@ void bindSettings(nb::module_& m) {
       .def_rw("width", &StrandSettings::width, "Root diameter in scene units; 0: 0.08 mm.")
       .def_rw("tip_width", &StrandSettings::tipWidth, "Tip diameter as a fraction of the root's.")
       .def("__repr__", [](const StrandSettings& s) {
-        return "<coif.StrandSettings: " + std::to_string(s.count) + " strands of " + std::to_string(s.points) + " points>";
+        return "<coif.StrandSettings: " + std::to_string(s.count) + " strands of " +
+               std::to_string(s.points) + " points>";
       });
 }
 
@@ -115,13 +118,15 @@ void bindSettings(nb::module_& m) {
 
 void bindScene(nb::module_& m) {
   bindSettings(m);
-  nb::class_<SceneModel> c(m, "Scene",
-                           "The document: which head, which hair mesh, how strands grow on it. A .coif file.\n\n"
-                           "evaluate() keeps its results: what has not changed is not computed again, and `reports`\n"
-                           "says what each stage did and why.");
+  nb::class_<SceneModel> c(
+      m, "Scene",
+      "The document: which head, which hair mesh, how strands grow on it. A .coif file.\n\n"
+      "evaluate() keeps its results: what has not changed is not computed again, and `reports`\n"
+      "says what each stage did and why.");
   c.def(
        "__init__",
-       [](SceneModel* self, const HairMeshModel* hairMesh, const std::filesystem::path& head, const std::string& name) {
+       [](SceneModel* self, const HairMeshModel* hairMesh, const std::filesystem::path& head,
+          const std::string& name) {
          Scene scene;
          scene.name = name;
          scene.head.path = head;
@@ -142,12 +147,16 @@ void bindScene(nb::module_& m) {
           },
           "path"_a, "Reads a .coif file. Raises Error naming the file and the JSON path of what is wrong.")
       .def(
-          "save", [](SceneModel& s, const std::filesystem::path& path) { take(saveScene(s.scene, path)); }, "path"_a,
-          "Writes a .coif file; the old one stays whole until the new one is. A relative head path follows the new place.")
+          "save", [](SceneModel& s, const std::filesystem::path& path) { take(saveScene(s.scene, path)); },
+          "path"_a,
+          "Writes a .coif file; the old one stays whole until the new one is. A relative head path follows "
+          "the new place.")
       .def("evaluate", &evaluate, nb::kw_only(), "use_head"_a = true, "force"_a = std::set<std::string>{},
            "threads"_a = 0, "progress"_a.none() = nb::none(),
-           "Places the hair mesh, lays roots on the head and grows the strands: a StrandSet of its own, free to change.\n\n"
-           "use_head: False leaves roots on the cage and never reads the head. force: names of stages to run although\n"
+           "Places the hair mesh, lays roots on the head and grows the strands: a StrandSet of its own, free "
+           "to change.\n\n"
+           "use_head: False leaves roots on the cage and never reads the head. force: names of stages to run "
+           "although\n"
            "nothing changed, or {'all'}. The interpreter lock is released. Raises Error.")
       .def("export", &exportScene, "path"_a, nb::kw_only(), "mesh"_a = StrandMesh::Cards, "use_head"_a = true,
            "threads"_a = 0, "progress"_a.none() = nb::none(),
@@ -155,7 +164,8 @@ void bindScene(nb::module_& m) {
       .def("placed_mesh", &placedMesh, "The hair mesh with its internal vertices placed (a copy).")
       .def_prop_ro("reports", &SceneModel::reports, "What each stage of the last evaluation did.")
       .def(
-          "explain", [](SceneModel& s) { return explainText(s.reports()); }, "The reports as a table for people.");
+          "explain", [](SceneModel& s) { return explainText(s.reports()); },
+          "The reports as a table for people.");
   c.def_prop_rw(
        "hair_mesh",
        [](const SceneModel& s) {
@@ -185,10 +195,12 @@ void bindScene(nb::module_& m) {
       .def_prop_rw(
           "up_axis", [](const SceneModel& s) { return s.scene.upAxis; },
           [](SceneModel& s, UpAxis axis) { s.scene.upAxis = axis; }, "Which axis points up.")
-      .def_prop_ro("file", [](const SceneModel& s) { return s.scene.file; },
-                   "Where it was loaded from or saved to; '' for a new one.")
+      .def_prop_ro(
+          "file", [](const SceneModel& s) { return s.scene.file; },
+          "Where it was loaded from or saved to; '' for a new one.")
       .def("__repr__", [](const SceneModel& s) {
-        return "<coif.Scene '" + s.scene.name + "': " + std::to_string(s.scene.hairMesh.bundles().size()) + " bundles>";
+        return "<coif.Scene '" + s.scene.name + "': " + std::to_string(s.scene.hairMesh.bundles().size()) +
+               " bundles>";
       });
 }
 

@@ -8,7 +8,8 @@
 
 namespace coif::python {
 
-/// A strand set and, when grow() made it, what grow() said of it. The point count never changes, so views stay valid.
+/// A strand set and, when grow() made it, what grow() said of it. The point count never changes, so views
+/// stay valid.
 struct Strands {
   StrandSet set;
   std::optional<GrowReport> report;

@@ -44,6 +44,23 @@ def test_every_parameter_has_a_name():
             assert "arg0" not in thing.__doc__ and "arg:" not in thing.__doc__, name
 
 
+def test_no_signature_shows_a_cpp_type():
+    for name, thing in public_members():
+        if callable(thing):
+            assert "::" not in (thing.__doc__ or ""), name
+
+
+def test_everything_has_a_repr(tuft):
+    report = coif.place(tuft)
+    strands = coif.grow(tuft, count=10)
+    head = coif.Scalp(coif.example_head(16))
+    made = tuft.extrude_faces(tuft.bundle_ids)
+    for thing in (tuft, report, report.error, strands, strands.report, head, head.mesh, head.surface, head.region(),
+                  head.report(), head.surface.nearest((0, 0, 0)), made, tuft.bundles[0], coif.Scene(tuft)):
+        assert repr(thing).startswith("<coif."), thing
+    assert str(head.report())
+
+
 def test_stubs_name_everything_public_and_parse():
     tree = ast.parse((PACKAGE / "_coif.pyi").read_text())
     defined = set()
