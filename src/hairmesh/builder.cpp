@@ -83,6 +83,7 @@ void HairMeshBuilder::regroup(std::uint32_t rootVertex, std::uint32_t fromLayer,
         const bool kept =
             std::none_of(groups.begin(), groups.end(), [&](const Group& g) { return g.old == vertex; });
         const HairVertex old = vertices[vertex];
+        rootChanged_ = rootChanged_ || (!kept && k == 0);
         const std::uint32_t fresh = kept ? vertex : addVertex(old.position, parent, k, old.pinned);
         vertices[fresh].parent = parent;
         vertices[fresh].welded = old.welded;
@@ -112,12 +113,14 @@ std::vector<EdgeSplit> HairMeshBuilder::splits() const {
 
 Status HairMeshBuilder::retopologise(const std::vector<EdgeSplit>& splits) {
   std::erase_if(bundles, [](const Bundle& bundle) { return bundle.vertices.empty(); });
+  rootChanged_ = true;
   COIF_ASSIGN(topology, Topology::build(vertices.size(), bundles, splits));
   return {};
 }
 
 void HairMeshBuilder::compact() {
-  std::erase_if(bundles, [](const Bundle& bundle) { return bundle.vertices.empty(); });
+  if (std::erase_if(bundles, [](const Bundle& bundle) { return bundle.vertices.empty(); }) > 0)
+    rootChanged_ = true;
   std::vector<std::uint32_t> index(vertices.size(), kNone);
   for (const Bundle& bundle : bundles) {
     for (const std::uint32_t v : bundle.vertices) index[v] = 0;
@@ -174,7 +177,11 @@ Status HairMeshBuilder::commit(HairMesh& mesh) {
     result.splits_[i].a = indexOf(ends[2 * i]);
     result.splits_[i].b = indexOf(ends[2 * i + 1]);
   }
-  COIF_TRY(retopologise(result.splits_));
+  if (rootChanged_) {
+    COIF_TRY(retopologise(result.splits_));
+  } else {
+    COIF_TRY(topology.renumber(vertices.size(), bundles, result.splits_));
+  }
   clearSingleFanWelds();
   result.vertices_ = std::move(vertices);
   result.bundles_ = std::move(bundles);

@@ -59,6 +59,8 @@ class HairMeshBuilder {
   static HairMesh restore(std::vector<HairVertex> vertices, std::vector<Bundle> bundles,
                           std::vector<EdgeSplit> splits, std::vector<std::string> groupNames,
                           std::uint32_t nextVertexId, std::uint32_t nextBundleId);
+  /// Moves the bundles out of a mesh that restore() is about to replace.
+  static std::vector<Bundle> takeBundles(HairMesh& mesh) { return std::move(mesh.bundles_); }
 
  private:
   void compact();
@@ -66,6 +68,7 @@ class HairMeshBuilder {
 
   std::vector<std::string> groupNames_;
   std::uint32_t nextVertexId_ = 0, nextBundleId_ = 0;
+  bool rootChanged_ = false;  // root faces, or which root vertices they have
 };
 
 namespace hairmesh {

@@ -28,6 +28,7 @@ void mergeById(A&& a, B&& b, Key key, OnlyA onlyA, OnlyB onlyB, Both both) {
   }
 }
 
+const auto kRecordKey = [](const auto& record) { return record.vertex.id; };
 const auto kBundleKey = [](const Bundle& b) { return b.id; };
 const auto kSplitKey = [](const EdgeSplit& s) { return std::pair(s.a, s.b); };
 
@@ -36,18 +37,26 @@ Error mismatch() {
                    "history");
 }
 
-/// `base` without `take`, with `put`, ascending by key; false when `take` is not part of it.
+/// Position of the element with a key in a range that ascends by key; kNone when there is none.
+template <class Range, class Key, class Value>
+std::uint32_t findKey(const Range& range, Key key, const Value& wanted) {
+  const auto at = std::lower_bound(range.begin(), range.end(), wanted,
+                                   [&](const auto& element, const Value& w) { return key(element) < w; });
+  return at != range.end() && key(*at) == wanted ? std::uint32_t(at - range.begin()) : kNone;
+}
+
+/// `base` without the keys of `take`, with `put`, ascending by key.
 template <class T, class Key>
-bool exchange(std::vector<T>& base, const std::vector<T>& take, const std::vector<T>& put, Key key) {
+std::vector<T> exchange(std::vector<T> base, const std::vector<T>& take, const std::vector<T>& put, Key key) {
   std::vector<T> rest, result;
-  bool matches = true;
+  rest.reserve(base.size());
+  result.reserve(base.size() + put.size());
   mergeById(
-      base, take, key, [&](T& x) { rest.push_back(std::move(x)); }, [&](const T&) { matches = false; },
-      [&](T& x, const T& taken) { matches = matches && x == taken; });
-  const auto add = [&](const T& x) { result.push_back(x); };
-  mergeById(rest, put, key, add, add, [&](const T&, const T&) { matches = false; });
-  base = std::move(result);
-  return matches;
+      base, take, key, [&](T& x) { rest.push_back(std::move(x)); }, [](const T&) {}, [](T&, const T&) {});
+  mergeById(
+      rest, put, key, [&](T& x) { result.push_back(std::move(x)); }, [&](const T& x) { result.push_back(x); },
+      [&](T&, const T& x) { result.push_back(x); });
+  return result;
 }
 
 }  // namespace
@@ -140,47 +149,122 @@ void History::record(const HairMesh& before, const HairMesh& after, std::string 
   ++done_;
 }
 
-Status History::change(HairMesh& mesh, const Step& step, const State& from, const State& to) {
-  if (mesh.nextVertexId() != from.nextVertexId || mesh.nextBundleId() != from.nextBundleId) return mismatch();
-  std::vector<VertexRecord> vertices;
-  std::vector<Bundle> bundles;
-  for (const HairVertex& vertex : mesh.vertices()) vertices.push_back(Differ::record(mesh, vertex));
-  for (const Bundle& bundle : mesh.bundles()) bundles.push_back(Differ::record(mesh, bundle));
-  std::vector<EdgeSplit> splits = Differ::splits(mesh);
-  std::vector<std::string> groups(mesh.groupNames().begin(), mesh.groupNames().end());
-  if (step.groupsChanged && groups != from.groupNames) return mismatch();
-  if (step.groupsChanged) groups = to.groupNames;
-  const auto vertexKey = [](const VertexRecord& r) { return r.vertex.id; };
-  if (!exchange(vertices, from.vertices, to.vertices, vertexKey) ||
-      !exchange(bundles, from.bundles, to.bundles, kBundleKey) ||
-      !exchange(splits, from.splits, to.splits, kSplitKey)) {
-    return mismatch();
+/// Turns a mesh from one side of a step into the other.
+class History::Change {
+ public:
+  Change(HairMesh& mesh, const State& from, const State& to, bool groupsChanged)
+      : mesh_(mesh), from_(from), to_(to), groupsChanged_(groupsChanged) {}
+
+  Status run() {
+    if (!matches()) return mismatch();
+    exchangeVertices();
+    if (!translateParents()) return mismatch();
+    std::vector<Bundle> bundles = to_.bundles;
+    for (Bundle& bundle : bundles) {
+      for (std::uint32_t& v : bundle.vertices) v = indexOf(v);
+      if (std::ranges::find(bundle.vertices, kNone) != bundle.vertices.end()) return mismatch();
+    }
+    std::vector<EdgeSplit> splits = exchange(Differ::splits(mesh_), from_.splits, to_.splits, kSplitKey);
+    for (EdgeSplit& split : splits) {
+      split.a = indexOf(split.a), split.b = indexOf(split.b);
+      if (split.a == kNone || split.b == kNone) return mismatch();
+    }
+    // Nothing fails from here on.
+    std::vector<std::string> groups(mesh_.groupNames().begin(), mesh_.groupNames().end());
+    if (groupsChanged_) groups = to_.groupNames;
+    std::vector<Bundle> own = HairMeshBuilder::takeBundles(mesh_);
+    for (Bundle& bundle : own) {
+      for (std::uint32_t& v : bundle.vertices) v = newIndex_[v];
+    }
+    mesh_ = HairMeshBuilder::restore(
+        std::move(vertices_), exchange(std::move(own), from_.bundles, bundles, kBundleKey), std::move(splits),
+        std::move(groups), to_.nextVertexId, to_.nextBundleId);
+    return {};
   }
-  // Back from ids to indices. The table is as long as the greatest live id.
-  std::vector<std::uint32_t> index(vertices.empty() ? 0 : std::size_t(vertices.back().vertex.id) + 1, kNone);
-  for (std::uint32_t v = 0; v < vertices.size(); ++v) index[std::uint32_t(vertices[v].vertex.id)] = v;
-  bool known = true;
-  const auto translate = [&](std::uint32_t& id) {
-    id = id < index.size() ? index[id] : kNone;
-    known = known && id != kNone;
-  };
-  std::vector<HairVertex> plain;
-  for (VertexRecord& record : vertices) {
-    if (record.vertex.parent != kNone) translate(record.vertex.parent);
-    plain.push_back(record.vertex);
+
+ private:
+  /// Is all that the step takes away there as it left it, and nothing that it adds?
+  bool matches() const {
+    if (mesh_.nextVertexId() != from_.nextVertexId || mesh_.nextBundleId() != from_.nextBundleId)
+      return false;
+    if (groupsChanged_ && !std::ranges::equal(mesh_.groupNames(), from_.groupNames)) return false;
+    for (const VertexRecord& record : from_.vertices) {
+      const std::uint32_t v = mesh_.indexOf(record.vertex.id);
+      if (v == kNone || !(Differ::record(mesh_, mesh_.vertices()[v]) == record)) return false;
+    }
+    for (const VertexRecord& record : to_.vertices) {
+      if (findKey(from_.vertices, kRecordKey, record.vertex.id) == kNone &&
+          mesh_.indexOf(record.vertex.id) != kNone) {
+        return false;
+      }
+    }
+    for (const Bundle& bundle : from_.bundles) {
+      const std::uint32_t j = mesh_.indexOf(bundle.id);
+      if (j == kNone || !(Differ::record(mesh_, mesh_.bundles()[j]) == bundle)) return false;
+    }
+    for (const Bundle& bundle : to_.bundles) {
+      if (findKey(from_.bundles, kBundleKey, bundle.id) == kNone && mesh_.indexOf(bundle.id) != kNone)
+        return false;
+    }
+    const auto splits = Differ::splits(mesh_);
+    return std::ranges::all_of(from_.splits, [&](const EdgeSplit& split) {
+      const std::uint32_t at = findKey(splits, kSplitKey, kSplitKey(split));
+      return at != kNone && splits[at] == split;
+    });
   }
-  for (Bundle& bundle : bundles) std::for_each(bundle.vertices.begin(), bundle.vertices.end(), translate);
-  for (EdgeSplit& split : splits) translate(split.a), translate(split.b);
-  if (!known) return mismatch();
-  mesh = HairMeshBuilder::restore(std::move(plain), std::move(bundles), std::move(splits), std::move(groups),
-                                  to.nextVertexId, to.nextBundleId);
-  return {};
-}
+
+  void exchangeVertices() {
+    newIndex_.assign(mesh_.vertices().size(), kNone);
+    std::size_t gone = 0, come = 0;
+    const auto put = [&](const HairVertex& vertex, bool byId) {
+      vertices_.push_back(vertex);
+      byId_.push_back(byId);
+    };
+    for (std::uint32_t v = 0; v < newIndex_.size(); ++v) {
+      const VertexId id = mesh_.vertices()[v].id;
+      while (come < to_.vertices.size() && to_.vertices[come].vertex.id < id)
+        put(to_.vertices[come++].vertex, true);
+      if (gone < from_.vertices.size() && from_.vertices[gone].vertex.id == id) {
+        ++gone;
+        if (come == to_.vertices.size() || to_.vertices[come].vertex.id != id) continue;
+        newIndex_[v] = std::uint32_t(vertices_.size());
+        put(to_.vertices[come++].vertex, true);
+        continue;
+      }
+      newIndex_[v] = std::uint32_t(vertices_.size());
+      put(mesh_.vertices()[v], false);
+    }
+    while (come < to_.vertices.size()) put(to_.vertices[come++].vertex, true);
+  }
+
+  bool translateParents() {
+    bool known = true;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      std::uint32_t& parent = vertices_[v].parent;
+      if (parent == kNone) continue;
+      parent = byId_[v] ? indexOf(parent) : newIndex_[parent];
+      known = known && parent != kNone;
+    }
+    return known;
+  }
+
+  std::uint32_t indexOf(std::uint32_t id) const {
+    return findKey(
+        vertices_, [](const HairVertex& v) { return v.id; }, VertexId{id});
+  }
+
+  HairMesh& mesh_;
+  const State &from_, &to_;
+  bool groupsChanged_;
+  std::vector<HairVertex> vertices_;
+  std::vector<std::uint8_t> byId_;  // is the parent of a new vertex an id still?
+  std::vector<std::uint32_t> newIndex_;
+};
 
 Status History::undo(HairMesh& mesh) {
   if (done_ == 0) return makeError(ErrorCode::NotFound, "there is no step to undo", "history");
   const Step& step = steps_[done_ - 1];
-  COIF_TRY(change(mesh, step, step.after, step.before));
+  COIF_TRY(Change(mesh, step.after, step.before, step.groupsChanged).run());
   --done_;
   return {};
 }
@@ -188,7 +272,7 @@ Status History::undo(HairMesh& mesh) {
 Status History::redo(HairMesh& mesh) {
   if (done_ == steps_.size()) return makeError(ErrorCode::NotFound, "there is no step to redo", "history");
   const Step& step = steps_[done_];
-  COIF_TRY(change(mesh, step, step.before, step.after));
+  COIF_TRY(Change(mesh, step.before, step.after, step.groupsChanged).run());
   ++done_;
   return {};
 }

@@ -34,33 +34,44 @@ Result<Topology> Topology::build(std::size_t vertexCount, std::span<const Bundle
     t.bundle_.insert(t.bundle_.end(), face.size(), j);
     t.offsets_.push_back(std::uint32_t(corners.size()));
   }
-  t.aroundOffsets_.assign(vertexCount + 1, 0);
-  for (const std::uint32_t v : corners) ++t.aroundOffsets_[v + 1];
-  std::partial_sum(t.aroundOffsets_.begin(), t.aroundOffsets_.end(), t.aroundOffsets_.begin());
-  t.around_.resize(corners.size());
-  std::vector<std::uint32_t> fill(t.aroundOffsets_.begin(), t.aroundOffsets_.end() - 1);
-  for (std::uint32_t c = 0; c < corners.size(); ++c) t.around_[fill[corners[c]]++] = c;
-
-  // Layer-0 vertices first in number, so that OpenMesh sees no isolated ones.
+  // OpenMesh sees the root vertices only.
   std::vector<std::uint32_t> compact(vertexCount, kNone);
+  for (const std::uint32_t v : corners) compact[v] = 0;
   std::uint32_t used = 0;
-  for (std::size_t v = 0; v < vertexCount; ++v) {
-    if (t.aroundOffsets_[v + 1] > t.aroundOffsets_[v]) compact[v] = used++;
+  for (std::uint32_t& index : compact) {
+    if (index == 0) index = used++;
   }
   for (std::uint32_t& v : corners) v = compact[v];
   COIF_ASSIGN(t.opposite_, oppositeSides(used, t.offsets_, corners));
+  COIF_TRY(t.renumber(vertexCount, bundles, splits));
+  return t;
+}
 
-  t.split_.assign(corners.size(), kNone);
+Status Topology::renumber(std::size_t vertexCount, std::span<const Bundle> bundles,
+                          std::span<const EdgeSplit> splits) {
+  const auto rootVertex = [&](std::uint32_t c) { return bundles[bundle_[c]].vertices[cornerOf(c)]; };
+  aroundOffsets_.assign(vertexCount + 1, 0);
+  for (std::uint32_t c = 0; c < sideCount(); ++c) ++aroundOffsets_[rootVertex(c) + 1];
+  std::partial_sum(aroundOffsets_.begin(), aroundOffsets_.end(), aroundOffsets_.begin());
+  around_.resize(sideCount());
+  slot_.resize(sideCount());
+  std::vector<std::uint32_t> filled(vertexCount, 0);
+  for (std::uint32_t c = 0; c < sideCount(); ++c) {
+    const std::uint32_t v = rootVertex(c);
+    slot_[c] = filled[v]++;
+    around_[aroundOffsets_[v] + slot_[c]] = c;
+  }
+  split_.assign(sideCount(), kNone);
   for (const EdgeSplit& split : splits) {
     const std::uint32_t side =
-        split.a < vertexCount && split.b < vertexCount ? t.findEdge(bundles, split.a, split.b) : kNone;
-    if (side == kNone || t.opposite_[side] == kNone) {
+        split.a < vertexCount && split.b < vertexCount ? findEdge(bundles, split.a, split.b) : kNone;
+    if (side == kNone || opposite_[side] == kNone) {
       return makeError(ErrorCode::Degenerate, "a split names no root edge that two bundles share",
                        "vertices " + std::to_string(split.a) + " and " + std::to_string(split.b));
     }
-    t.setSplit(side, split.layer);
+    setSplit(side, split.layer);
   }
-  return t;
+  return {};
 }
 
 std::uint32_t Topology::findEdge(std::span<const Bundle> bundles, std::uint32_t a, std::uint32_t b) const {
@@ -84,8 +95,7 @@ void fanLabels(const Topology& topology, std::span<const Bundle> bundles, std::u
     changed = false;
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
       if (labels[i] == kNone || !topology.joined(bundles, corners[i], layer)) continue;
-      const std::uint32_t across = topology.next(topology.opposite(corners[i]));
-      const auto at = std::lower_bound(corners.begin(), corners.end(), across) - corners.begin();
+      const std::uint32_t at = topology.slot(topology.next(topology.opposite(corners[i])));
       if (labels[i] == labels[at]) continue;
       labels[i] = labels[at] = std::min(labels[i], labels[at]);
       changed = true;

@@ -23,6 +23,10 @@ class Topology {
   static Result<Topology> build(std::size_t vertexCount, std::span<const Bundle> bundles,
                                 std::span<const EdgeSplit> splits);
 
+  /// The same root faces with other vertex indices and splits: keeps the adjacency.
+  Status renumber(std::size_t vertexCount, std::span<const Bundle> bundles,
+                  std::span<const EdgeSplit> splits);
+
   std::uint32_t sideCount() const { return std::uint32_t(bundle_.size()); }
   std::uint32_t side(std::uint32_t bundle, std::uint32_t corner) const { return offsets_[bundle] + corner; }
   std::uint32_t bundleOf(std::uint32_t side) const { return bundle_[side]; }
@@ -54,13 +58,15 @@ class Topology {
     return std::span(around_).subspan(aroundOffsets_[rootVertex],
                                       aroundOffsets_[rootVertex + 1] - aroundOffsets_[rootVertex]);
   }
+  /// Position of a corner in around() of its root vertex.
+  std::uint32_t slot(std::uint32_t corner) const { return slot_[corner]; }
   std::uint32_t vertexCount() const { return std::uint32_t(aroundOffsets_.size()) - 1; }
 
   /// The side from root vertex a to b or from b to a; kNone when there is none.
   std::uint32_t findEdge(std::span<const Bundle> bundles, std::uint32_t a, std::uint32_t b) const;
 
  private:
-  std::vector<std::uint32_t> offsets_, bundle_, opposite_, split_, aroundOffsets_, around_;
+  std::vector<std::uint32_t> offsets_, bundle_, opposite_, split_, aroundOffsets_, around_, slot_;
 };
 
 /// Labels of the fans at a root vertex on one layer: corners that joined edges connect have the same label,

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/hairmesh/invariants.h"
+#include "coif/io/mesh_io.h"
 
 namespace coif {
 
@@ -38,6 +42,24 @@ inline HairMesh capMesh(std::uint32_t n) {
     mesh.setPosition(v, {u, w, std::sqrt(std::max(0.0, 1 - u * u - w * w))});
   }
   return mesh;
+}
+
+inline std::filesystem::path headPath(const std::string& name) {
+  return std::filesystem::path(COIF_SHARED_DATA) / "heads" / name;
+}
+
+/// The faces of a polygon file whose middle is wanted, as a root layer.
+inline HairMesh headMesh(const std::string& name, const std::function<bool(const Vec3&)>& wanted) {
+  const PolygonMesh polygons = loadPolygonMesh(headPath(name)).value();
+  PolygonMesh chosen;
+  chosen.positions = polygons.positions;
+  for (std::size_t f = 0; f < polygons.faceCount(); ++f) {
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t v : polygons.face(f))
+      middle += polygons.positions[v] / double(polygons.face(f).size());
+    if (wanted(middle)) chosen.addFace(polygons.face(f));
+  }
+  return HairMesh::fromRoot(chosen.positions, chosen.faceOffsets, chosen.corners).value();
 }
 
 inline std::vector<BundleId> allBundles(const HairMesh& mesh) {

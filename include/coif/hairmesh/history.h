@@ -69,7 +69,7 @@ class History {
     bool groupsChanged = false;
   };
   class Differ;
-  static Status change(HairMesh& mesh, const Step& step, const State& from, const State& to);
+  class Change;
 
   std::vector<Step> steps_;
   std::size_t done_ = 0;
