@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "coif/base/random.h"
+#include "triangle_tree.h"
 
 namespace coif {
 namespace {
@@ -73,29 +74,78 @@ double residual(const Surface& surface, const MirrorPlane& plane, std::span<cons
   return std::sqrt(sum / double(points.size()));
 }
 
-/// One round of closest points: the reflection that best carries `from` to `to`.
+/// The reflection that best carries `from` to `to`: the least eigenvector of their cross-covariance.
+MirrorPlane bestReflection(std::span<const Match> pairs, double unit, const MirrorPlane& fallback) {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+  for (const Match& x : pairs) {
+    from += x.from / double(pairs.size());
+    to += x.to / double(pairs.size());
+  }
+  Mat3 cross = Mat3::Zero();
+  for (const Match& x : pairs) {
+    const Vec3 a = (x.from - from) / unit, b = (x.to - to) / unit;
+    cross += a * b.transpose() + b * a.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(cross);
+  if (solver.info() != Eigen::Success || !cross.allFinite()) return fallback;
+  MirrorPlane out;
+  out.normal = solver.eigenvectors().col(0).normalized();
+  if (out.normal.dot(fallback.normal) < 0) out.normal = -out.normal;
+  out.point = 0.5 * (from + to);
+  return out;
+}
+
+/// One round of closest points.
 MirrorPlane refined(const Surface& surface, const MirrorPlane& plane, std::span<const Vec3> points) {
   std::vector<Match> m = matches(surface, plane, points);
   std::stable_sort(m.begin(), m.end(),
                    [](const Match& a, const Match& b) { return a.distance < b.distance; });
   m.resize(std::max<std::size_t>(3, m.size() * 4 / 5));
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  for (const Match& x : m) {
-    from += x.from / double(m.size());
-    to += x.to / double(m.size());
+  return bestReflection(m, surface.size(), plane);
+}
+
+/// Modelled heads are symmetric vertex by vertex: then the pairs give the plane to rounding. Else `plane` as
+/// it was.
+MirrorPlane pairedVertices(const Surface& surface, std::span<const std::uint32_t> faces,
+                           const MirrorPlane& plane) {
+  const PolygonMesh& mesh = surface.mesh();
+  std::vector<std::uint8_t> used(mesh.vertexCount(), 0);
+  const auto use = [&](std::size_t f) {
+    for (std::uint32_t v : mesh.face(f)) used[v] = mesh.positions[v].allFinite();
+  };
+  if (faces.empty())
+    for (std::size_t f = 0; f < mesh.faceCount(); ++f) use(f);
+  for (std::uint32_t f : faces) use(f);
+  const double unit = surface.size();
+  const Vec3 origin = plane.point;
+  std::vector<TriangleTree::Triangle> points;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) {
+      const Vec3 p = (mesh.positions[v] - origin) / unit;
+      points.push_back({p, p, p});
+    }
+  if (points.size() < 4) return plane;
+  const TriangleTree tree(points);
+  MirrorPlane best{Vec3::Zero(), plane.normal, 0, false};
+  const std::size_t stride = 1 + points.size() / 20000;
+  for (double reach : {3e-3, 1e-4, 1e-6, 1e-6}) {
+    std::vector<Match> pairs;
+    std::size_t asked = 0;
+    for (std::size_t i = 0; i < points.size(); i += stride, ++asked) {
+      const auto hit = tree.nearest(best.reflect(points[i][0]));
+      if (hit.distance < reach) pairs.push_back({points[i][0], points[hit.triangle][0], hit.distance});
+    }
+    if (pairs.size() < std::max<std::size_t>(4, asked * 4 / 5)) return plane;
+    best = bestReflection(pairs, 1, best);
   }
-  Mat3 cross = Mat3::Zero();
-  for (const Match& x : m) {
-    const Vec3 a = (x.from - from) / surface.size(), b = (x.to - to) / surface.size();
-    cross += a * b.transpose() + b * a.transpose();
+  best.point = origin + unit * best.point;
+  // Files keep six digits: a plane that close to an axis plane is meant to be one.
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(std::abs(best.normal[k]) - 1) > 1e-12) continue;
+    best.normal = std::copysign(1.0, best.normal[k]) * Vec3::Unit(k);
+    if (std::abs(best.point[k]) < 1e-6 * unit) best.point[k] = 0;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(cross);
-  if (solver.info() != Eigen::Success || !cross.allFinite()) return plane;
-  MirrorPlane out;
-  out.normal = solver.eigenvectors().col(0).normalized();
-  if (out.normal.dot(plane.normal) < 0) out.normal = -out.normal;
-  out.point = 0.5 * (from + to);
-  return out;
+  return best;
 }
 
 std::vector<Vec3> candidates(const Samples& samples, const MirrorOptions& options) {
@@ -134,13 +184,14 @@ Result<MirrorPlane> findMirrorPlane(const Surface& surface, std::span<const std:
     bestScore = score;
   }
   if (!any) return makeError(ErrorCode::Degenerate, "No mirror plane holds the given direction.");
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const MirrorPlane next = refined(surface, best, fine.points);
     const double change =
         (next.normal - best.normal).norm() + std::abs(next.side(best.point)) / surface.size();
     best = next;
-    if (change < 1e-10) break;
+    if (change < 1e-7) break;
   }
+  best = pairedVertices(surface, faces, best);
   best.residual = residual(surface, best, fine.points);
   best.accepted = best.residual <= options.threshold;
   return best;

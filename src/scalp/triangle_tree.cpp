@@ -13,6 +13,8 @@ using IglTree = igl::AABB<Eigen::MatrixXd, 3>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The tree is balanced: its depth is at most log2(2^32) + 1, and a walk keeps one sibling a level.
 constexpr std::size_t kMaxStack = 80;
+// Below this the triangles' own solid angles cost less than the moments' memory.
+constexpr std::size_t kFewTriangles = 8;
 
 Vec3 point(const TriangleTree::Triangle& t, const Vec3& b) {
   return b[0] * t[0] + b[1] * t[1] + b[2] * t[2];
@@ -131,36 +133,56 @@ std::uint32_t TriangleTree::copyTree(const void* opaque) {
   return index;
 }
 
+TriangleTree::Far TriangleTree::farField(std::span<const std::uint32_t> triangles) const {
+  Far far;
+  double area = 0;
+  Vec3 middle = Vec3::Zero();
+  for (std::uint32_t i : triangles) {
+    const Triangle& t = triangles_[i];
+    const double a = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    area += a;
+    far.centre += a * (t[0] + t[1] + t[2]) / 3;
+    middle += (t[0] + t[1] + t[2]) / (3 * double(triangles.size()));
+  }
+  far.centre = area > 0 ? Vec3(far.centre / area) : middle;
+  for (std::uint32_t i : triangles) {
+    const Triangle& t = triangles_[i];
+    const Vec3 normal = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
+    const Vec3 d[3] = {t[0] - far.centre, t[1] - far.centre, t[2] - far.centre};
+    const Vec3 sum = d[0] + d[1] + d[2];
+    Mat3 square = sum * sum.transpose();
+    for (const Vec3& x : d) {
+      square += x * x.transpose();
+      far.radius = std::max(far.radius, x.norm());
+    }
+    far.dipole += normal;
+    far.moment += sum / 3 * normal.transpose();
+    for (int k = 0; k < 3; ++k) far.second[std::size_t(k)] += normal[k] / 12 * square;
+  }
+  return far;
+}
+
 void TriangleTree::gather(std::uint32_t index, std::vector<std::uint32_t>& below) {
   const std::size_t first = below.size();
   Node& node = nodes_[index];
-  if (node.triangle != kNone) {
-    below.push_back(node.triangle);
-  } else {
-    gather(node.left, below);
-    gather(node.right, below);
-  }
   node.lo = Vec3::Constant(kInfinity);
   node.hi = -node.lo;
-  double area = 0;
-  for (std::size_t i = first; i < below.size(); ++i) {
-    const Triangle& t = triangles_[below[i]];
-    const Vec3 normal = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
-    area += normal.norm();
-    node.centre += normal.norm() * (t[0] + t[1] + t[2]) / 3;
-    node.dipole += normal;
-    for (const Vec3& p : t) {
+  if (node.triangle != kNone) {
+    below.push_back(node.triangle);
+    for (const Vec3& p : triangles_[node.triangle]) {
       node.lo = node.lo.cwiseMin(p);
       node.hi = node.hi.cwiseMax(p);
     }
+    return;
   }
-  node.centre = area > 0 ? Vec3(node.centre / area) : Vec3(0.5 * (node.lo + node.hi));
-  for (std::size_t i = first; i < below.size(); ++i) {
-    const Triangle& t = triangles_[below[i]];
-    const Vec3 normal = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
-    node.moment += ((t[0] + t[1] + t[2]) / 3 - node.centre) * normal.transpose();
-    for (const Vec3& p : t) node.radius = std::max(node.radius, (p - node.centre).norm());
+  for (std::uint32_t child : {node.left, node.right}) {
+    gather(child, below);
+    node.lo = node.lo.cwiseMin(nodes_[child].lo);
+    node.hi = node.hi.cwiseMax(nodes_[child].hi);
   }
+  if (below.size() - first < kFewTriangles) return;
+  node.far = std::uint32_t(far_.size());
+  far_.push_back(farField(std::span(below).subspan(first)));
 }
 
 TriangleTree::Hit TriangleTree::nearest(const Vec3& p) const {
@@ -232,16 +254,24 @@ double TriangleTree::windingNumber(const Vec3& p, double beta) const {
       sum += solidAngle(triangles_[node.triangle], p);
       continue;
     }
-    const Vec3 r = node.centre - p;
+    const Far* far = node.far == kNone ? nullptr : &far_[node.far];
+    const Vec3 r = far == nullptr ? p : Vec3(far->centre - p);
     const double d2 = r.squaredNorm();
-    if (d2 <= beta * beta * node.radius * node.radius) {
+    if (far == nullptr || d2 <= beta * beta * far->radius * far->radius) {
       stack[top++] = node.right;
       stack[top++] = node.left;
       continue;
     }
     const double d = std::sqrt(d2), inverse3 = 1 / (d2 * d) / (4 * std::numbers::pi);
-    // ∇(r/|r|³) = I/|r|³ − 3 r rᵀ/|r|⁵, contracted with the moment.
-    sum += inverse3 * (node.dipole.dot(r) + node.moment.trace() - 3 * r.dot(node.moment * r) / d2);
+    // Taylor series of r/|r|³ about the centre: its value, gradient and second derivatives on the moments.
+    double trace = 0, cubic = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 sr = far->second[std::size_t(k)] * r;
+      trace += far->second[std::size_t(k)].trace() * r[k] + 2 * sr[k];
+      cubic += r[k] * r.dot(sr);
+    }
+    sum += inverse3 * (far->dipole.dot(r) + far->moment.trace() - 3 * r.dot(far->moment * r) / d2 +
+                       (7.5 * cubic / d2 - 1.5 * trace) / d2);
   }
   return sum;
 }
