@@ -100,7 +100,7 @@ Status unpackBlock(std::span<const std::byte> block, std::uint64_t room, std::ve
   out.resize(at + most);
   const int got = LZ4_decompress_safe(reinterpret_cast<const char*>(block.data()),
                                       reinterpret_cast<char*>(out.data() + at), int(block.size()), int(most));
-  if (got < 0) return broken("A compressed block is broken.");
+  if (got < 0) return broken("a compressed block is broken");
   out.resize(at + std::size_t(got));
   return {};
 }
@@ -126,12 +126,12 @@ std::vector<std::byte> compress(std::span<const std::byte> bytes) {
 }
 
 Result<std::vector<std::byte>> decompress(std::span<const std::byte> packed, std::uint64_t greatest) {
-  if (packed.empty()) return broken("A compressed block is empty.");
+  if (packed.empty()) return broken("a compressed block is empty");
   const auto chunks = std::to_integer<unsigned>(packed[0]);
   packed = packed.subspan(1);
   std::vector<std::byte> out;
   if (chunks == 0) {
-    if (packed.size() > kChunk) return broken("A compressed block is longer than LZ4 allows.");
+    if (packed.size() > kChunk) return broken("a compressed block is longer than LZ4 allows");
     COIF_TRY(unpackBlock(packed, greatest, out));
     return out;
   }
@@ -139,7 +139,7 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> packed, std
   for (unsigned c = 0; c < chunks; ++c) {
     const auto size = source.take<std::int32_t>();
     if (!source.ok || size < 0 || std::size_t(size) > source.bytes.size()) {
-      return broken("A compressed block ends too early.");
+      return broken("a compressed block ends too early");
     }
     COIF_TRY(unpackBlock(source.bytes.first(std::size_t(size)), greatest - out.size(), out));
     source.bytes = source.bytes.subspan(std::size_t(size));
@@ -183,11 +183,11 @@ Result<std::vector<T>> decodeIntegers(std::span<const std::byte> packed, std::ui
   // Two bits at least a number, each byte of LZ4 at most kGreatestRatio: refuses wild counts before any
   // memory.
   if (count / 4 > (packed.size() + 1) * kGreatestRatio) {
-    return broken("A list of integers claims more than its bytes can hold.");
+    return broken("a list of integers claims more than its bytes can hold");
   }
   COIF_ASSIGN(const std::vector<std::byte> coded,
               decompress(packed, codeBytes<T>(count) + count * sizeof(T)));
-  if (coded.size() < codeBytes<T>(count)) return broken("A list of integers ends too early.");
+  if (coded.size() < codeBytes<T>(count)) return broken("a list of integers ends too early");
   T common;
   std::memcpy(&common, coded.data(), sizeof common);
   Source source{std::span(coded).subspan(codeBytes<T>(count))};
@@ -210,7 +210,7 @@ Result<std::vector<T>> decodeIntegers(std::span<const std::byte> packed, std::ui
     }
     values[i] = T(value);
   }
-  if (!source.ok) return broken("A list of integers ends too early.");
+  if (!source.ok) return broken("a list of integers ends too early");
   return values;
 }
 

@@ -3,6 +3,7 @@
 
 #include "coif/io/safe_file.h"
 #include "coif/io/strand_io.h"
+#include "scan.h"
 #include "usd_value.h"
 
 namespace coif::io::usd {
@@ -33,12 +34,11 @@ Status writeText(const Layer& layer, SafeFile& file, const Context& context);
 /// The layer as a crate 0.8.0 (.usdc). Arrays of 16 integers and more are compressed, floats lie as they are.
 Status writeCrate(const Layer& layer, SafeFile& file, const Context& context);
 
-/// Either form, told apart by its first bytes. Large arrays may be views of `bytes`. Errors: Malformed,
-/// Unsupported
-/// (.usdz, an unknown crate version), TooLarge (more than 2 GiB once unpacked); the place is a line or a
-/// byte.
-Result<Layer> readLayer(std::span<const std::byte> bytes);
-Result<Layer> parseText(std::string_view text);
-Result<Layer> readCrate(std::span<const std::byte> bytes);
+/// Either form, told apart by its first bytes. Large arrays may be views of `bytes`; all else is paid for
+/// from `budget`. Errors: Malformed, Unsupported (.usdz, an unknown crate version), TooLarge; the place is a
+/// line, a byte or a section.
+Result<Layer> readLayer(std::span<const std::byte> bytes, MemoryBudget& budget);
+Result<Layer> parseText(std::string_view text, MemoryBudget& budget);
+Result<Layer> readCrate(std::span<const std::byte> bytes, MemoryBudget& budget);
 
 }  // namespace coif::io::usd

@@ -28,7 +28,7 @@ Result<Prim> meshPrim(std::string name, const std::vector<Vec3>& positions, std:
   for (std::size_t v = 0; v < positions.size(); ++v) {
     points.push_back(positions[v].cast<float>());
     if (!points.back().allFinite()) {
-      return makeError(ErrorCode::Degenerate, "The position does not fit a float.",
+      return makeError(ErrorCode::Degenerate, "the position does not fit a float",
                        name + " vertex " + std::to_string(v));
     }
     lo = v == 0 ? points.back() : Vec3f(lo.cwiseMin(points.back()));

@@ -243,17 +243,17 @@ Status checkFrames(const StrandExport& what) {
     const std::string place = "frame " + std::to_string(&frame - what.frames.data());
     if (frame.points.size() != what.strands->pointCount()) {
       return makeError(ErrorCode::InvalidArgument,
-                       "The frame has " + std::to_string(frame.points.size()) + " points, the strands have " +
-                           std::to_string(what.strands->pointCount()) + ".",
+                       "the frame has " + std::to_string(frame.points.size()) + " points, the strands have " +
+                           std::to_string(what.strands->pointCount()) + "",
                        place);
     }
     if (!std::isfinite(frame.timeCode) || frame.timeCode <= before) {
-      return makeError(ErrorCode::InvalidArgument, "Time codes must be finite and ascend.", place);
+      return makeError(ErrorCode::InvalidArgument, "time codes must be finite and ascend", place);
     }
     before = frame.timeCode;
   }
   if (!what.frames.empty() && !(what.timeCodesPerSecond > 0 && std::isfinite(what.timeCodesPerSecond))) {
-    return makeError(ErrorCode::InvalidArgument, "timeCodesPerSecond must be positive.");
+    return makeError(ErrorCode::InvalidArgument, "timeCodesPerSecond must be positive");
   }
   return {};
 }
@@ -263,10 +263,10 @@ Status checkLengths(const StrandSet& set) {
     const std::uint64_t size = set.offsets[s + 1] - set.offsets[s];
     const std::string place = "strand " + std::to_string(s);
     if (size < 2) {
-      return makeError(ErrorCode::InvalidArgument, "A USD curve needs two points or more.", place);
+      return makeError(ErrorCode::InvalidArgument, "a USD curve needs two points or more", place);
     }
     if (size > std::uint64_t(std::numeric_limits<std::int32_t>::max())) {
-      return makeError(ErrorCode::TooLarge, "A USD curve has at most 2^31 - 1 points.", place);
+      return makeError(ErrorCode::TooLarge, "a USD curve has at most 2^31 - 1 points", place);
     }
   }
   return {};

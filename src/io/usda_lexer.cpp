@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scan.h"
+
 namespace coif::io::usd {
 namespace {
 
@@ -34,8 +36,7 @@ void appendEscape(char c, std::string& out) {
 }  // namespace
 
 Error TextLexer::fail(std::string message, ErrorCode code) const {
-  const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n');
-  return makeError(code, std::move(message), "line " + std::to_string(line));
+  return makeError(code, std::move(message), linePlace(text_, at_));
 }
 
 void TextLexer::skipBlank() {
@@ -79,7 +80,7 @@ std::string_view TextLexer::peekWord() {
 Result<std::string> TextLexer::quoted() {
   skipBlank();
   const char quote = peek();
-  if (quote != '"' && quote != '\'') return fail("A string is expected here.");
+  if (quote != '"' && quote != '\'') return fail("a string is expected here");
   const bool triple = text_.substr(at_, 3) == std::string(3, quote);
   const std::size_t open = triple ? 3 : 1;
   const std::string_view close = text_.substr(at_, open);
@@ -97,25 +98,25 @@ Result<std::string> TextLexer::quoted() {
       out += c;
     }
   }
-  return fail("A string is not closed.");
+  return fail("a string is not closed");
 }
 
 Result<std::string> TextLexer::asset() {
   skipBlank();
   const std::size_t marks = rest().starts_with("@@@") ? 3 : 1;
-  if (peek() != '@') return fail("An asset path is expected here.");
+  if (peek() != '@') return fail("an asset path is expected here");
   const std::size_t start = at_ + marks;
   const std::size_t end = text_.find(text_.substr(at_, marks), start);
-  if (end == std::string_view::npos) return fail("An asset path is not closed.");
+  if (end == std::string_view::npos) return fail("an asset path is not closed");
   at_ = end + marks;
   return std::string(text_.substr(start, end - start));
 }
 
 Result<std::string> TextLexer::path() {
   skipBlank();
-  if (peek() != '<') return fail("A path is expected here.");
+  if (peek() != '<') return fail("a path is expected here");
   const std::size_t end = text_.find('>', at_);
-  if (end == std::string_view::npos) return fail("A path is not closed.");
+  if (end == std::string_view::npos) return fail("a path is not closed");
   std::string found(text_.substr(at_ + 1, end - at_ - 1));
   at_ = end + 1;
   return found;
@@ -147,13 +148,13 @@ Status TextLexer::skipValue() {
   std::size_t depth = 0;
   do {
     skipBlank();
-    if (atEnd()) return fail("The text ends inside a value.");
+    if (atEnd()) return fail("the text ends inside a value");
     const char c = peek();
     if (c == '[' || c == '(' || c == '{') {
       ++depth;
       advance();
     } else if (c == ']' || c == ')' || c == '}') {
-      if (depth == 0) return fail("A value is expected here.");
+      if (depth == 0) return fail("a value is expected here");
       --depth;
       advance();
     } else if (isWordCharacter(c) || c == '-' || c == '+' || c == '.') {
@@ -181,7 +182,7 @@ Status TextLexer::skipStatement() {
     }
     COIF_TRY(skipToken());
   }
-  return depth == 0 ? Status() : Status(fail("The text ends inside a value."));
+  return depth == 0 ? Status() : Status(fail("the text ends inside a value"));
 }
 
 }  // namespace coif::io::usd

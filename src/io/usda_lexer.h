@@ -1,7 +1,9 @@
 // Characters of a .usda text into words, strings, numbers; every read is inside the text.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string>
 #include <string_view>
 

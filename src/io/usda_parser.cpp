@@ -1,6 +1,5 @@
 // .usda text into a Layer: the grammar that real files use; compositions are skipped and noted, not resolved.
 #include <Eigen/Core>
-#include <limits>
 #include <set>
 #include <unordered_map>
 
@@ -10,8 +9,8 @@
 namespace coif::io::usd {
 namespace {
 
-constexpr int kGreatestDepth = 256;                               ///< of prims in prims
-constexpr std::uint64_t kGreatestBytes = std::uint64_t{1} << 31;  ///< of all arrays once parsed
+constexpr std::size_t kBlock = 1 << 16;  ///< numbers between two looks at the budget
+constexpr int kGreatestDepth = 256;      ///< of prims in prims
 
 bool isListOp(std::string_view word) {
   return word == "prepend" || word == "append" || word == "add" || word == "delete" || word == "reorder";
@@ -22,10 +21,10 @@ using Index = std::unordered_map<std::string, std::size_t>;
 
 class TextParser {
  public:
-  explicit TextParser(std::string_view text) : lexer_(text) {}
+  TextParser(std::string_view text, MemoryBudget& budget) : lexer_(text), budget_(budget) {}
 
   Result<Layer> layer() {
-    if (!lexer_.rest().starts_with("#usda ")) return lexer_.fail("The text does not begin with '#usda'.");
+    if (!lexer_.rest().starts_with("#usda ")) return lexer_.fail("the text does not begin with '#usda'");
     lexer_.skipBlank();
     if (lexer_.peek() == '(') COIF_TRY(metadata(layer_.metadata));
     while (true) {
@@ -44,23 +43,23 @@ class TextParser {
 
  private:
   Status prim(std::string_view specifier, std::vector<Prim>& siblings, int depth) {
-    if (depth >= kGreatestDepth) return lexer_.fail("Prims are nested too deeply.", ErrorCode::Unsupported);
+    if (depth >= kGreatestDepth) return lexer_.fail("prims are nested too deeply", ErrorCode::Unsupported);
     Prim p;
     if (specifier == "over") {
       p.specifier = Specifier::Over;
     } else if (specifier == "class") {
       p.specifier = Specifier::Class;
     } else if (specifier != "def") {
-      return lexer_.fail("A prim (def, over, class) is expected here.");
+      return lexer_.fail("a prim (def, over, class) is expected here");
     }
     p.typeName = lexer_.word();
     COIF_ASSIGN(p.name, lexer_.quoted());
     lexer_.skipBlank();
     if (lexer_.peek() == '(') COIF_TRY(metadata(p.metadata));
-    if (!lexer_.accept('{')) return lexer_.fail("The prim '" + p.name + "' has no body.");
+    if (!lexer_.accept('{')) return lexer_.fail("the prim '" + p.name + "' has no body");
     Index index;
     while (!lexer_.accept('}')) {
-      if (lexer_.atEnd()) return lexer_.fail("The prim '" + p.name + "' is not closed.");
+      if (lexer_.atEnd()) return lexer_.fail("the prim '" + p.name + "' is not closed");
       COIF_TRY(primItem(p, index, depth));
     }
     siblings.push_back(std::move(p));
@@ -69,7 +68,7 @@ class TextParser {
 
   Status primItem(Prim& p, Index& index, int depth) {
     std::string_view word = lexer_.word();
-    if (word.empty()) return lexer_.fail("A prim or a property is expected here.");
+    if (word.empty()) return lexer_.fail("a prim or a property is expected here");
     if (word == "def" || word == "over" || word == "class") return prim(word, p.children, depth + 1);
     if (word == "variantSet") {
       leftOut_.insert("Variants");
@@ -84,7 +83,7 @@ class TextParser {
   Status skipStringAndEquals() {
     const auto name = lexer_.quoted();
     if (!name) return name.error();
-    return lexer_.accept('=') ? Status() : Status(lexer_.fail("'=' is expected here."));
+    return lexer_.accept('=') ? Status() : Status(lexer_.fail("'=' is expected here"));
   }
 
   /// [listop] [custom] [uniform|varying] (rel | type) name[.timeSamples|.connect|.…] [= value] [(metadata)]
@@ -99,11 +98,11 @@ class TextParser {
     if (word == "rel") return relationship(p, remove);
     std::string typeName(word);
     if (lexer_.accept('[')) {
-      if (!lexer_.accept(']')) return lexer_.fail("']' is expected here.");
+      if (!lexer_.accept(']')) return lexer_.fail("']' is expected here");
       typeName += "[]";
     }
     const std::string name(lexer_.word());
-    if (typeName.empty() || name.empty()) return lexer_.fail("A property is expected here.");
+    if (typeName.empty() || name.empty()) return lexer_.fail("a property is expected here");
     const auto [at, isNew] = index.emplace(name, p.attributes.size());
     if (isNew) {
       p.attributes.emplace_back();
@@ -142,7 +141,7 @@ class TextParser {
   Status relationship(Prim& p, bool remove) {
     Relationship r;
     r.name = lexer_.word();
-    if (r.name.empty()) return lexer_.fail("A relationship is expected here.");
+    if (r.name.empty()) return lexer_.fail("a relationship is expected here");
     if (lexer_.accept('=')) COIF_TRY(targets(r.targets));
     lexer_.skipBlank();
     std::vector<Entry> ignored;
@@ -168,11 +167,11 @@ class TextParser {
 
   /// The first sample is kept, the others are skipped.
   Status timeSamples(Attribute& a, const Type& type) {
-    if (!lexer_.accept('{')) return lexer_.fail("Time samples begin with '{'.");
+    if (!lexer_.accept('{')) return lexer_.fail("time samples begin with '{'");
     while (!lexer_.accept('}')) {
       Sample sample;
-      if (!lexer_.number(sample.time)) return lexer_.fail("A time is expected here.");
-      if (!lexer_.accept(':')) return lexer_.fail("':' is expected here.");
+      if (!lexer_.number(sample.time)) return lexer_.fail("a time is expected here");
+      if (!lexer_.accept(':')) return lexer_.fail("':' is expected here");
       if (a.samples.empty()) {
         COIF_ASSIGN(sample.value, value(type));
         a.samples.push_back(std::move(sample));
@@ -222,25 +221,26 @@ class TextParser {
   template <class T>
   Result<Value> numeric(const Type& type) {
     std::vector<T> numbers;
+    std::size_t paid = 0;
     if (type.array) {
-      if (!lexer_.accept('[')) return lexer_.fail("An array begins with '['.");
+      if (!lexer_.accept('[')) return lexer_.fail("an array begins with '['");
       while (!lexer_.accept(']')) {
         COIF_TRY(element(type, numbers));
         lexer_.accept(',');
-        if (numbers.size() * sizeof(T) > kGreatestBytes) return tooLarge();
+        if (numbers.size() - paid >= kBlock) {
+          COIF_TRY(budget_.take(numbers.size() - paid, sizeof(T)));
+          paid = numbers.size();
+        }
       }
     } else {
       COIF_TRY(element(type, numbers));
     }
-    bytes_ += numbers.size() * sizeof(T);
-    if (bytes_ > kGreatestBytes) return tooLarge();
+    COIF_TRY(budget_.take(numbers.size() - paid, sizeof(T)));
     const std::uint64_t count = numbers.size() / type.components;
     Value out = owned(type, std::move(numbers));
     out.array.count = count;
     return out;
   }
-
-  Error tooLarge() const { return lexer_.fail("The arrays take more than 2 GiB.", ErrorCode::TooLarge); }
 
   /// A number, or as many as the type has, in any nesting of parentheses (matrices have rows).
   template <class T>
@@ -252,20 +252,20 @@ class TextParser {
       lexer_.skipBlank();
       const char c = lexer_.peek();
       if (c == '(') {
-        if (++depth > 2) return lexer_.fail("A tuple is nested too deeply.");
+        if (++depth > 2) return lexer_.fail("a tuple is nested too deeply");
         lexer_.advance();
       } else if (c == ')') {
-        if (--depth < 0) return lexer_.fail("A tuple is expected here.");
+        if (--depth < 0) return lexer_.fail("a tuple is expected here");
         lexer_.advance();
         if (depth > 0) lexer_.accept(',');
       } else {
-        if (depth == 0) return lexer_.fail("A tuple is expected here.");
+        if (depth == 0) return lexer_.fail("a tuple is expected here");
         COIF_TRY(one(numbers));
         lexer_.accept(',');
       }
     } while (depth > 0);
     if (numbers.size() - before != type.components) {
-      return lexer_.fail("A tuple of " + std::to_string(type.components) + " numbers is expected here.");
+      return lexer_.fail("a tuple of " + std::to_string(type.components) + " numbers is expected here");
     }
     return {};
   }
@@ -295,7 +295,7 @@ class TextParser {
       lexer_.word();
       return {};
     }
-    return lexer_.fail("A number is expected here.");
+    return lexer_.fail("a number is expected here");
   }
 
   Result<Value> texts(const Type& type) {
@@ -305,7 +305,7 @@ class TextParser {
       COIF_TRY(text(out.strings));
       return out;
     }
-    if (!lexer_.accept('[')) return lexer_.fail("An array begins with '['.");
+    if (!lexer_.accept('[')) return lexer_.fail("an array begins with '['");
     while (!lexer_.accept(']')) {
       COIF_TRY(text(out.strings));
       lexer_.accept(',');
@@ -325,7 +325,7 @@ class TextParser {
   Status metadata(std::vector<Entry>& entries) {
     lexer_.accept('(');
     while (!lexer_.accept(')')) {
-      if (lexer_.atEnd()) return lexer_.fail("The text ends inside '(…)'.");
+      if (lexer_.atEnd()) return lexer_.fail("the text ends inside '(…)'");
       if (lexer_.peek() == '"' || lexer_.peek() == '\'') {  // a comment
         const auto comment = lexer_.quoted();
         if (!comment) return comment.error();
@@ -334,8 +334,8 @@ class TextParser {
       if (lexer_.accept(',')) continue;
       std::string_view key = lexer_.word();
       if (isListOp(key)) key = lexer_.word();
-      if (key.empty()) return lexer_.fail("A name is expected here.");
-      if (!lexer_.accept('=')) return lexer_.fail("'=' is expected here.");
+      if (key.empty()) return lexer_.fail("a name is expected here");
+      if (!lexer_.accept('=')) return lexer_.fail("'=' is expected here");
       noteComposition(key);
       COIF_TRY(metadataValue(key, entries));
     }
@@ -375,13 +375,13 @@ class TextParser {
   TextLexer lexer_;
   Layer layer_;
   std::set<std::string> leftOut_;
-  std::uint64_t bytes_ = 0;
+  MemoryBudget& budget_;
 };
 
 }  // namespace
 
-Result<Layer> parseText(std::string_view text) {
-  return TextParser(text).layer();
+Result<Layer> parseText(std::string_view text, MemoryBudget& budget) {
+  return TextParser(text, budget).layer();
 }
 
 }  // namespace coif::io::usd

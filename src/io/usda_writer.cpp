@@ -250,7 +250,7 @@ class TextWriter {
 
 Status writeText(const Layer& layer, SafeFile& file, const Context& context) {
   TextWriter(file, context).layer(layer);
-  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "Writing was cancelled.");
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "writing was cancelled");
   return {};
 }
 

@@ -13,19 +13,18 @@ using namespace crate;
 
 constexpr int kGreatestDepth = 256;                                ///< of prims in prims
 constexpr std::uint64_t kGreatestVisits = std::uint64_t{1} << 26;  ///< of fields, all specs together
-constexpr std::uint64_t kGreatestTexts = std::uint64_t{1} << 28;   ///< bytes of names copied into the layer
 
 class CrateReader {
  public:
-  CrateReader(std::span<const std::byte> file, const Tables& tables)
-      : tables_(tables), values_(file, tables), children_(tables.nodes.size()) {}
+  CrateReader(std::span<const std::byte> file, const Tables& tables, MemoryBudget& budget)
+      : tables_(tables), values_(file, tables, budget), children_(tables.nodes.size()), budget_(budget) {}
 
   Result<Layer> layer() {
     for (const std::uint32_t node : tables_.order) {
       const std::uint32_t parent = tables_.nodes[node].parent;
       if (parent != kNone) children_[parent].push_back(node);
     }
-    if (tables_.order.empty()) return makeError(ErrorCode::Malformed, "The crate has no root.");
+    if (tables_.order.empty()) return makeError(ErrorCode::Malformed, "the crate has no root");
     Layer layer;
     const std::uint32_t root = tables_.order.front();
     std::vector<std::string> names;
@@ -44,7 +43,7 @@ class CrateReader {
     const Node& n = tables_.nodes[node];
     if (n.type == SpecType{}) return {};
     for (std::size_t i = n.fieldSet; tables_.fieldSets[i] != kEndOfFieldSet; ++i) {
-      if (++visits_ > kGreatestVisits) return makeError(ErrorCode::TooLarge, "The file has too many fields.");
+      if (++visits_ > kGreatestVisits) return makeError(ErrorCode::TooLarge, "the file has too many fields");
       const std::uint32_t f = tables_.fieldSets[i];
       COIF_TRY(body(tables_.tokens[tables_.fieldNames[f]], tables_.fieldReps[f]));
     }
@@ -54,12 +53,7 @@ class CrateReader {
   std::string_view nameOf(std::uint32_t node) const { return tables_.tokens[tables_.nodes[node].name]; }
 
   /// Copies of names and texts are paid for: one long name must not be copied a million times.
-  Status pay(std::uint64_t bytes) {
-    textBytes_ += bytes;
-    if (textBytes_ > kGreatestTexts)
-      return makeError(ErrorCode::TooLarge, "The file's names take too much memory.");
-    return {};
-  }
+  Status pay(std::uint64_t bytes) { return budget_.take(bytes, 1); }
 
   Result<Value> value(Rep rep) {
     COIF_ASSIGN(Value found, values_.read(rep));
@@ -86,7 +80,7 @@ class CrateReader {
 
   /// The child prims of a node in the order that its primChildren field gives.
   Status prims(std::uint32_t node, const std::vector<std::string>& names, std::vector<Prim>& out, int depth) {
-    if (depth > kGreatestDepth) return makeError(ErrorCode::Unsupported, "Prims are nested too deeply.");
+    if (depth > kGreatestDepth) return makeError(ErrorCode::Unsupported, "prims are nested too deeply");
     std::unordered_map<std::string_view, std::size_t> ranks;
     for (std::size_t i = 0; i < names.size(); ++i) ranks.emplace(names[i], i);
     std::vector<std::pair<std::size_t, std::uint32_t>> ordered;
@@ -198,23 +192,24 @@ class CrateReader {
   ValueReader values_;
   std::vector<std::vector<std::uint32_t>> children_;
   std::set<std::string> leftOut_;
-  std::uint64_t visits_ = 0, textBytes_ = 0;
+  MemoryBudget& budget_;
+  std::uint64_t visits_ = 0;
 };
 
 }  // namespace
 
-Result<Layer> readCrate(std::span<const std::byte> bytes) {
-  COIF_ASSIGN(const Tables tables, readTables(bytes));
-  return CrateReader(bytes, tables).layer();
+Result<Layer> readCrate(std::span<const std::byte> bytes, MemoryBudget& budget) {
+  COIF_ASSIGN(const Tables tables, readTables(bytes, budget));
+  return CrateReader(bytes, tables, budget).layer();
 }
 
-Result<Layer> readLayer(std::span<const std::byte> bytes) {
+Result<Layer> readLayer(std::span<const std::byte> bytes, MemoryBudget& budget) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with(kMagic)) return readCrate(bytes);
+  if (text.starts_with(kMagic)) return readCrate(bytes, budget);
   if (text.starts_with("PK\x03\x04")) {
-    return makeError(ErrorCode::Unsupported, "USD packages (.usdz) are not read; unpack it first.");
+    return makeError(ErrorCode::Unsupported, "USD packages (.usdz) are not read; unpack it first");
   }
-  return parseText(text);
+  return parseText(text, budget);
 }
 
 }  // namespace coif::io::usd

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coif/base/vec.h"
+#include "scan.h"
 #include "usd_crate.h"
 
 namespace coif::io::usd::crate {
@@ -60,10 +61,7 @@ struct Tables {
   std::vector<std::uint32_t> order;  ///< path indices, parents before children, siblings as in the file
 };
 
-/// What all tables and arrays of a file may take in memory.
-inline constexpr std::uint64_t kMemoryLimit = std::uint64_t{1} << 31;
-
 /// Errors: Malformed (place: the section), Unsupported (version before 0.4 or after 0.13), TooLarge.
-Result<Tables> readTables(std::span<const std::byte> file);
+Result<Tables> readTables(std::span<const std::byte> file, MemoryBudget& budget);
 
 }  // namespace coif::io::usd::crate

@@ -45,7 +45,7 @@ Result<Value> fromLookup(const Type& type, std::span<const std::byte> table,
   out.reserve(indices.size());
   for (const std::int32_t i : indices) {
     if (i < 0 || std::size_t(i) >= table.size() / sizeof(T)) {
-      return makeError(ErrorCode::Malformed, "An index of a packed array is out of range.");
+      return makeError(ErrorCode::Malformed, "an index of a packed array is out of range");
     }
     T value;
     std::memcpy(&value, table.data() + std::size_t(i) * sizeof(T), sizeof value);
@@ -58,14 +58,6 @@ Result<Value> fromLookup(const Type& type, std::span<const std::byte> table,
 
 Error ValueReader::broken(std::uint64_t at, const char* why) {
   return makeError(ErrorCode::Malformed, why, "byte " + std::to_string(at));
-}
-
-Status ValueReader::charge(std::uint64_t count, std::uint64_t bytesEach) {
-  if (count > (kMemoryLimit - charged_) / bytesEach) {
-    return makeError(ErrorCode::TooLarge, "The arrays take more than 2 GiB once unpacked.");
-  }
-  charged_ += count * bytesEach;
-  return {};
 }
 
 Result<Value> ValueReader::read(Rep rep) {
@@ -107,7 +99,7 @@ Result<Value> ValueReader::numeric(Rep rep, const TypePair& type) {
   Cursor cursor(file_, rep.payload());
   const Type plain{type.base, type.components, false};
   const auto bytes = cursor.takeBytes(baseBytes(type.base) * type.components);
-  if (!cursor.ok) return broken(rep.payload(), "A value lies outside the file.");
+  if (!cursor.ok) return broken(rep.payload(), "a value lies outside the file");
   std::vector<std::byte> copy(bytes.begin(), bytes.end());
   if (isQuaternion(type.crate)) realPartFirst(copy, baseBytes(type.base));
   Value value = owned(plain, std::move(copy));
@@ -155,7 +147,7 @@ Result<Value> ValueReader::array(Rep rep, const TypePair& type) {
   if (rep.payload() == 0) return owned(plain, std::vector<std::byte>());
   Cursor cursor(file_, rep.payload());
   const std::uint64_t elements = count(cursor);
-  if (!cursor.ok) return broken(rep.payload(), "An array lies outside the file.");
+  if (!cursor.ok) return broken(rep.payload(), "an array lies outside the file");
   if (rep.compressed() && elements >= kLeastCompressed) {
     auto value = packed(cursor, plain, elements);
     if (!value) {
@@ -166,10 +158,10 @@ Result<Value> ValueReader::array(Rep rep, const TypePair& type) {
     return value;
   }
   const std::size_t size = baseBytes(type.base) * type.components;
-  if (elements > cursor.left() / size) return broken(rep.payload(), "An array is longer than the file.");
+  if (elements > cursor.left() / size) return broken(rep.payload(), "an array is longer than the file");
   const auto bytes = cursor.takeBytes(elements * size);
   if (isQuaternion(type.crate)) {
-    COIF_TRY(charge(bytes.size(), 1));
+    COIF_TRY(budget_.take(bytes.size(), 1));
     std::vector<std::byte> copy(bytes.begin(), bytes.end());
     realPartFirst(copy, baseBytes(type.base));
     Value value = owned(plain, std::move(copy));
@@ -184,13 +176,13 @@ Result<Value> ValueReader::array(Rep rep, const TypePair& type) {
 }
 
 Result<Value> ValueReader::packed(Cursor cursor, const Type& type, std::uint64_t elements) {
-  if (type.components != 1) return broken(cursor.at(), "Only arrays of plain numbers are packed.");
-  COIF_TRY(charge(elements, 4 * sizeof(std::int64_t)));
+  if (type.components != 1) return broken(cursor.at(), "only arrays of plain numbers are packed");
+  COIF_TRY(budget_.take(elements, 4 * sizeof(std::int64_t)));
   if (type.base == Base::Half || type.base == Base::Float || type.base == Base::Double) {
     return packedFloats(cursor, type, elements);
   }
   const auto block = cursor.takeSized();
-  if (!cursor.ok) return broken(cursor.at(), "A packed array is cut off.");
+  if (!cursor.ok) return broken(cursor.at(), "a packed array is cut off");
   if (type.base == Base::Int || type.base == Base::UInt) {
     COIF_ASSIGN(std::vector<std::int32_t> values, decodeIntegers<std::int32_t>(block, elements));
     return owned(type, std::move(values));
@@ -199,7 +191,7 @@ Result<Value> ValueReader::packed(Cursor cursor, const Type& type, std::uint64_t
     COIF_ASSIGN(std::vector<std::int64_t> values, decodeIntegers<std::int64_t>(block, elements));
     return owned(type, std::move(values));
   }
-  return broken(cursor.at(), "Only arrays of plain numbers are packed.");
+  return broken(cursor.at(), "only arrays of plain numbers are packed");
 }
 
 /// 'i': whole numbers as integers; 't': a table of the few values that occur, and indices into it.
@@ -211,7 +203,7 @@ Result<Value> ValueReader::packedFloats(Cursor cursor, const Type& type, std::ui
     table = cursor.takeBytes(values * baseBytes(type.base));
   }
   const auto block = cursor.takeSized();
-  if (!cursor.ok || (code != 'i' && code != 't')) return broken(cursor.at(), "A packed array is cut off.");
+  if (!cursor.ok || (code != 'i' && code != 't')) return broken(cursor.at(), "a packed array is cut off");
   COIF_ASSIGN(const std::vector<std::int32_t> indices, decodeIntegers<std::int32_t>(block, elements));
   if (code == 'i') {
     if (type.base == Base::Half) return converted<Eigen::half>(type, indices);
@@ -232,17 +224,17 @@ Result<Value> ValueReader::texts(Rep rep, Base base) {
     Cursor cursor(file_, rep.payload());
     const std::uint64_t elements = count(cursor);
     if (!cursor.ok || elements > cursor.left() / 4) {
-      return broken(rep.payload(), "An array is longer than the file.");
+      return broken(rep.payload(), "an array is longer than the file");
     }
-    COIF_TRY(charge(elements, sizeof(std::string) + 8));
+    COIF_TRY(budget_.take(elements, sizeof(std::string) + 8));
     for (std::uint64_t i = 0; i < elements; ++i) indices.push_back(cursor.take<std::uint32_t>());
   }
   for (std::uint64_t index : indices) {
     if (base == Base::String) {
-      if (index >= tables_.strings.size()) return broken(rep.payload(), "A string's index is out of range.");
+      if (index >= tables_.strings.size()) return broken(rep.payload(), "a string's index is out of range");
       index = tables_.strings[index];
     }
-    if (index >= tables_.tokens.size()) return broken(rep.payload(), "A name's index is out of range.");
+    if (index >= tables_.tokens.size()) return broken(rep.payload(), "a name's index is out of range");
     value.strings.emplace_back(tables_.tokens[index]);
   }
   return value;
@@ -252,12 +244,12 @@ Result<Value> ValueReader::tokenVector(Rep rep) {
   Cursor cursor(file_, rep.payload());
   const auto elements = cursor.take<std::uint64_t>();
   if (!cursor.ok || elements > cursor.left() / 4)
-    return broken(rep.payload(), "A list is longer than the file.");
-  COIF_TRY(charge(elements, sizeof(std::string)));
+    return broken(rep.payload(), "a list is longer than the file");
+  COIF_TRY(budget_.take(elements, sizeof(std::string)));
   std::vector<std::string> names;
   for (std::uint64_t i = 0; i < elements; ++i) {
     const auto index = cursor.take<std::uint32_t>();
-    if (index >= tables_.tokens.size()) return broken(rep.payload(), "A name's index is out of range.");
+    if (index >= tables_.tokens.size()) return broken(rep.payload(), "a name's index is out of range");
     names.emplace_back(tables_.tokens[index]);
   }
   return tokens(std::move(names));
@@ -273,13 +265,13 @@ Result<Value> ValueReader::firstSample(Rep rep) {
   };
   Cursor times = jump(rep.payload());
   times.take<std::uint64_t>();
-  if (!times.ok) return broken(rep.payload(), "Time samples lie outside the file.");
+  if (!times.ok) return broken(rep.payload(), "time samples lie outside the file");
   Cursor values = jump(times.at());
   const auto elements = values.take<std::uint64_t>();
-  if (!values.ok) return broken(rep.payload(), "Time samples lie outside the file.");
+  if (!values.ok) return broken(rep.payload(), "time samples lie outside the file");
   if (elements == 0) return Value();
   const Rep first{values.take<std::uint64_t>()};
-  if (!values.ok) return broken(rep.payload(), "Time samples lie outside the file.");
+  if (!values.ok) return broken(rep.payload(), "time samples lie outside the file");
   return first.type() == CrateType::TimeSamples ? Value() : read(first);
 }
 
@@ -293,14 +285,14 @@ Result<std::vector<std::uint32_t>> ValueReader::paths(Rep rep) {
     if (!(flags & list)) continue;
     const auto elements = cursor.take<std::uint64_t>();
     if (!cursor.ok || elements > cursor.left() / 4)
-      return broken(rep.payload(), "A list is longer than the file.");
+      return broken(rep.payload(), "a list is longer than the file");
     for (std::uint64_t i = 0; i < elements; ++i) {
       const auto path = cursor.take<std::uint32_t>();
-      if (path >= tables_.nodes.size()) return broken(rep.payload(), "A path's index is out of range.");
+      if (path >= tables_.nodes.size()) return broken(rep.payload(), "a path's index is out of range");
       found.push_back(path);
     }
   }
-  if (!cursor.ok) return broken(rep.payload(), "A list lies outside the file.");
+  if (!cursor.ok) return broken(rep.payload(), "a list lies outside the file");
   return found;
 }
 

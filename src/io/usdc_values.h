@@ -9,7 +9,8 @@ namespace coif::io::usd::crate {
 
 class ValueReader {
  public:
-  ValueReader(std::span<const std::byte> file, const Tables& tables) : file_(file), tables_(tables) {}
+  ValueReader(std::span<const std::byte> file, const Tables& tables, MemoryBudget& budget)
+      : file_(file), tables_(tables), budget_(budget) {}
 
   /// Numbers, texts, token vectors; of time samples the first. Base::None for what Coif does not read. Plain
   /// arrays are views of the file; a value that several fields point to is unpacked once. Errors: Malformed
@@ -29,13 +30,12 @@ class ValueReader {
   Result<Value> tokenVector(Rep rep);
   Result<Value> firstSample(Rep rep);
   std::uint64_t count(Cursor& cursor) const;
-  Status charge(std::uint64_t count, std::uint64_t bytesEach);
   static Error broken(std::uint64_t at, const char* why);
 
   std::span<const std::byte> file_;
   const Tables& tables_;
   std::map<Rep, Value> known_;
-  std::uint64_t charged_ = 0;
+  MemoryBudget& budget_;
 };
 
 }  // namespace coif::io::usd::crate

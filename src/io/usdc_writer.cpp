@@ -426,7 +426,7 @@ class CrateWriter {
 
 Status writeCrate(const Layer& layer, SafeFile& file, const Context& context) {
   CrateWriter(file, context).layer(layer);
-  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "Writing was cancelled.");
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "writing was cancelled");
   return {};
 }
 

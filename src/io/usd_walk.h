@@ -1,0 +1,36 @@
+// Finding prims of a layer with the place they stand at: transforms, visibility and purpose come from above.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "coif/scalp/polygon_mesh.h"
+#include "usd_layer.h"
+
+namespace coif::io::usd {
+
+/// A prim with what it inherits.
+struct Placed {
+  const Prim* prim = nullptr;
+  std::string path;  ///< for messages: shortened in front when very long
+  Eigen::Matrix4d worldFromPrim = Eigen::Matrix4d::Identity();
+  bool helper = false;  ///< purpose guide or proxy: not what is rendered
+};
+
+/// Every defined, active prim of that type, depth first; prototypes of instancers and classes are left out
+/// (noted). Errors: Unsupported (a transform of an unknown kind), Malformed (a transform without a value).
+Result<std::vector<Placed>> placedPrims(const Layer& layer, std::string_view typeName, MemoryBudget& budget,
+                                        std::vector<std::string>& notes);
+
+/// The prim's own transform by its xformOpOrder; `resets` when it starts from the world again.
+Result<Eigen::Matrix4d> localTransform(const Prim& prim, bool& resets);
+
+double metersPerUnit(const Layer& layer, double otherwise);
+UpAxis upAxis(const Layer& layer);
+
+/// A primvar's numbers, `components` of each element, indices (`name:indices`) applied. Empty when there is
+/// none.
+std::vector<float> primvarNumbers(const Prim& prim, const std::string& name, int components);
+/// The stated interpolation of an attribute; empty when it says none.
+std::string_view interpolationOf(const Prim& prim, std::string_view name);
+
+}  // namespace coif::io::usd
