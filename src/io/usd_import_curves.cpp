@@ -233,7 +233,8 @@ class CurvesImport {
   }
 
   Status widths() {
-    COIF_ASSIGN(set_.widths, primvarAtPoints(prim_.value("widths") != nullptr ? "widths" : "primvars:widths", 1));
+    COIF_ASSIGN(set_.widths,
+                primvarAtPoints(prim_.value("widths") != nullptr ? "widths" : "primvars:widths", 1));
     const Eigen::Matrix3d turn = placed_.worldFromPrim.topLeftCorner<3, 3>();
     if (turn.isIdentity(0)) return {};
     const auto scale = float(std::cbrt(std::abs(turn.determinant())));
@@ -429,7 +430,8 @@ Result<StrandSet> readStrands(Bytes bytes, MemoryBudget& budget) {
     auto part = import.read();
     if (!part) return inPrim(part.error(), placed.path);
     notes.insert(notes.end(), import.notes.begin(), import.notes.end());
-    if (part->strandCount() == 0 && !import.notes.empty() && unusable.empty()) unusable = import.notes.front();
+    if (part->strandCount() == 0 && !import.notes.empty() && unusable.empty())
+      unusable = import.notes.front();
     if (part->strandCount() == 0) continue;
     std::vector<std::uint32_t> numbers = std::exchange(part->groups, {});  // named only afterwards
     const Status valid = validate(*part);

@@ -81,13 +81,14 @@ class MeshImport {
     source.points = numbers<float>(*points);
     source.counts = numbers<std::int64_t>(*counts);
     source.corners = numbers<std::int64_t>(*corners);
-    std::uint64_t sum = 0;
+    std::uint64_t left = source.corners.size();
     for (const std::int64_t count : source.counts) {
-      if (count < 0 || (sum += std::uint64_t(count)) > source.corners.size()) break;
+      if (count < 0 || std::uint64_t(count) > left) {
+        return makeError(ErrorCode::Malformed, "faceVertexCounts do not add up to faceVertexIndices");
+      }
+      left -= std::uint64_t(count);
     }
-    if (sum != source.corners.size()) {
-      return makeError(ErrorCode::Malformed, "faceVertexCounts do not add up to faceVertexIndices");
-    }
+    if (left > 0) return makeError(ErrorCode::Malformed, "faceVertexCounts do not add up to faceVertexIndices");
     const auto vertices = std::int64_t(source.points.size() / 3);
     for (std::size_t c = 0; c < source.corners.size(); ++c) {
       if (source.corners[c] < 0 || source.corners[c] >= vertices) {

@@ -38,18 +38,6 @@ void dumpSource(const StrandSet& set, const std::filesystem::path& base) {
   dump(file("weightOffsets"), set.weightOffsets);
 }
 
-PolygonMesh cube() {
-  PolygonMesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.positions.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
-  const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& face : faces) mesh.addFace(face);
-  mesh.cornerUvs.assign(24, Vec2(0.25, 0.75));
-  mesh.faceGroups = {0, 0, 1, 1, 1, 1};
-  mesh.groupNames = {"scalp", "the rest"};
-  return mesh;
-}
-
 void write(const StrandExport& what, const std::filesystem::path& base) {
   for (const char* extension : {".usda", ".usdc"}) {
     const std::filesystem::path path = base.string() + extension;
@@ -63,7 +51,7 @@ void write(const StrandExport& what, const std::filesystem::path& base) {
 TEST(Usd, WritesEveryArray) {
   const TemporaryFolder temporary("usd_export");
   const StrandSet strands = richStrands(2000);
-  const PolygonMesh head = cube();
+  const PolygonMesh head = groupedCube();
   const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const std::uint32_t offsets[] = {0, 4}, face[] = {0, 1, 2, 3};
   const auto hairMesh = HairMesh::fromRoot(corners, offsets, face);

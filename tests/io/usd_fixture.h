@@ -55,6 +55,19 @@ inline StrandSet richStrands(std::size_t count) {
   return set;
 }
 
+/// A cube in two groups, with UVs.
+inline PolygonMesh groupedCube() {
+  PolygonMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.positions.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
+  const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& face : faces) mesh.addFace(face);
+  for (int c = 0; c < 24; ++c) mesh.cornerUvs.emplace_back(c / 32.0, 0.75);
+  mesh.faceGroups = {0, 0, 1, 1, 1, 1};
+  mesh.groupNames = {"scalp", "the rest"};
+  return mesh;
+}
+
 /// A folder of this test's own, removed at the end.
 class TemporaryFolder {
  public:

@@ -12,7 +12,7 @@ import pytest
 
 np = pytest.importorskip("numpy")
 pxr = pytest.importorskip("pxr", reason="usd-core is not installed")
-from pxr import Sdf, Usd, UsdGeom, UsdShade  # noqa: E402
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ.get("COIF_BIN_DIR", ROOT / "build/release/bin"))
@@ -215,3 +215,143 @@ def test_time_samples(out, form):
 
 def test_crate_version(out):
     assert (out / "rich.usdc").read_bytes()[8:11] == bytes([0, 8, 0])
+
+
+# Files that OpenUSD writes, read by Coif.
+
+
+def write_foreign_layers(folder):
+    """A crate and a text of each: transforms, instanced-looking hierarchies, packed arrays, odd value types."""
+    for name in ("mesh", "curves"):
+        for form in FORMS:
+            stage = Usd.Stage.CreateNew(str(folder / (name + form)))
+            (fill_meshes if name == "mesh" else fill_curves)(stage, np.random.default_rng(3))
+            stage.GetRootLayer().Save()
+
+
+def random_transform(xformable, rng, step):
+    """Another set of operations each time, all kinds over a few prims."""
+    vector = lambda scale=1: Gf.Vec3d(*(rng.standard_normal(3) * scale))
+    if step == 0:
+        xformable.AddTranslateOp().Set(vector(3))
+        xformable.AddRotateXYZOp().Set(Gf.Vec3f(*(rng.standard_normal(3) * 40)))
+        xformable.AddScaleOp().Set(Gf.Vec3f(1.5, 0.5, 2))
+    elif step == 1:
+        pivot = xformable.AddTranslateOp(UsdGeom.XformOp.PrecisionFloat, "pivot")
+        pivot.Set(Gf.Vec3f(*rng.standard_normal(3)))
+        xformable.AddRotateZYXOp().Set(Gf.Vec3f(10, 20, 30))
+        xformable.AddOrientOp().Set(Gf.Quatf(0.5, 0.5, -0.5, 0.5))
+        xformable.AddTranslateOp(UsdGeom.XformOp.PrecisionFloat, "pivot", True)
+    elif step == 2:
+        xformable.AddRotateYOp().Set(33.0)
+        xformable.AddTransformOp().Set(Gf.Matrix4d(1).SetTranslate(vector()))
+        xformable.AddTransformOp(opSuffix="whole").Set(Gf.Matrix4d(Gf.Vec4d(2, 3, -1, 1)))
+    else:
+        xformable.SetResetXformStack(True)
+        xformable.AddRotateYZXOp().Set(Gf.Vec3f(5, 6, 7))
+
+
+def fill_meshes(stage, rng):
+    UsdGeom.SetStageUpAxis(stage, "Z")
+    parent = "/World"
+    UsdGeom.Xform.Define(stage, parent)
+    for step in range(4):
+        path = f"{parent}/m{step}"
+        mesh = UsdGeom.Mesh.Define(stage, path)
+        side = 40
+        grid = np.arange(side * side).reshape(side, side)
+        quads = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], -1).reshape(-1, 4)
+        points = rng.standard_normal((side * side, 3)).astype(np.float32)
+        if step == 1:
+            points = np.round(points * 10)  # whole numbers: OpenUSD packs these floats as integers
+        if step == 2:
+            points[:, 2] = 0.25
+        mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points))
+        mesh.CreateFaceVertexCountsAttr([4] * len(quads))
+        mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(quads.ravel().astype(np.int32)))
+        st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "faceVarying")
+        st.Set(Vt.Vec2fArray.FromNumpy(rng.random((50, 2)).astype(np.float32)))
+        st.SetIndices(Vt.IntArray.FromNumpy(rng.integers(0, 50, quads.size).astype(np.int32)))
+        random_transform(UsdGeom.Xformable(mesh), rng, step)
+        parent = path
+
+
+def fill_curves(stage, rng):
+    UsdGeom.Xform.Define(stage, "/World")
+    for step in range(3):
+        curve = UsdGeom.BasisCurves.Define(stage, f"/World/z{9 - step}")  # file order is not name order
+        counts = rng.integers(2, 9, 500)
+        curve.CreateTypeAttr("cubic" if step else "linear")
+        curve.CreateBasisAttr("catmullRom")
+        curve.CreateWrapAttr("pinned" if step else "nonperiodic")
+        curve.CreateCurveVertexCountsAttr(Vt.IntArray.FromNumpy(counts.astype(np.int32)))
+        curve.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(rng.standard_normal((counts.sum(), 3)).astype(np.float32)))
+        # Few values: packed with a table. Whole values: packed as integers. Others: as they are.
+        widths = [rng.choice(np.float32([0.1, 0.2, 0.3]), counts.sum()), rng.integers(1, 9, counts.sum()),
+                  rng.random(counts.sum())][step].astype(np.float32)
+        curve.CreateWidthsAttr(Vt.FloatArray.FromNumpy(widths))
+        curve.SetWidthsInterpolation("vertex")
+        ids = UsdGeom.PrimvarsAPI(curve).CreatePrimvar("coif:id", Sdf.ValueTypeNames.Int64Array, "uniform")
+        ids.Set(Vt.Int64Array.FromNumpy(rng.integers(-2**62, 2**62, 500)))
+    stage.GetPrimAtPath("/World").SetMetadata("customData", {"a": {"b": 1.5}, "c": Vt.IntArray([1, 2])})
+
+
+@pytest.fixture(scope="session")
+def foreign(tmp_path_factory):
+    program = BIN / "test_io"
+    if not program.exists():
+        pytest.skip(f"{program} is not built")
+    folder = tmp_path_factory.mktemp("foreign")
+    write_foreign_layers(folder)
+    subprocess.run([program, "--gtest_filter=Usd.ReadsWhatOpenUsdWrites"], check=True, capture_output=True,
+                   env=os.environ | {"COIF_TEST_IN": str(folder)})
+    return folder
+
+
+def read_back(folder, name, array, dtype, columns=1):
+    values = np.fromfile(folder / f"{name}.{array}.bin", dtype)
+    return values.reshape(-1, columns) if columns > 1 else values
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_foreign_meshes(foreign, form):
+    name = "mesh" + form
+    stage = Usd.Stage.Open(str(foreign / name))
+    positions, corners, uvs, counts = [], [], [], []
+    for prim in stage.Traverse():
+        if not prim.IsA(UsdGeom.Mesh):
+            continue
+        mesh = UsdGeom.Mesh(prim)
+        world = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default()))
+        points = np.array(mesh.GetPointsAttr().Get(), np.float64)
+        indices = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4) + len(np.concatenate(
+            positions)) if positions else np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 4)
+        uv = np.array(UsdGeom.PrimvarsAPI(prim).GetPrimvar("st").ComputeFlattened()).reshape(-1, 4, 2)
+        if np.linalg.det(world[:3, :3]) < 0:  # mirrored: faces turn round to keep their outside
+            indices, uv = indices[:, ::-1], uv[:, ::-1]
+        positions.append(points @ world[:3, :3] + world[3, :3])
+        corners.append(indices.ravel())
+        uvs.append(uv.reshape(-1, 2))
+        counts.append(len(indices))
+    expected = np.concatenate(positions)
+    got = read_back(foreign, name, "positions", np.float64, 3)
+    # Both multiply a few 4x4 matrices in double: some 10 roundings of values below 100.
+    assert got.shape == expected.shape and np.abs(got - expected).max() < 1e-12
+    assert np.array_equal(read_back(foreign, name, "corners", np.uint32), np.concatenate(corners))
+    assert np.array_equal(read_back(foreign, name, "uvs", np.float64, 2), np.concatenate(uvs))
+    assert np.array_equal(read_back(foreign, name, "faceOffsets", np.uint32), np.arange(sum(counts) + 1) * 4)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_foreign_curves(foreign, form):
+    name = "curves" + form
+    stage = Usd.Stage.Open(str(foreign / name))
+    found = curves(stage)
+    assert [c.GetPrim().GetName() for c in found] == ["z9", "z8", "z7"]
+    every = lambda pick: np.concatenate([np.array(pick(c)) for c in found])
+    assert bits(read_back(foreign, name, "points", np.float32, 3)) == bits(every(lambda c: c.GetPointsAttr().Get()))
+    assert bits(read_back(foreign, name, "widths", np.float32)) == bits(every(lambda c: c.GetWidthsAttr().Get()))
+    assert np.array_equal(np.diff(read_back(foreign, name, "offsets", np.uint64)),
+                          every(lambda c: c.GetCurveVertexCountsAttr().Get()))
+    assert np.array_equal(read_back(foreign, name, "ids", np.int64),
+                          every(lambda c: UsdGeom.PrimvarsAPI(c).GetPrimvar("coif:id").Get()))
