@@ -1,15 +1,13 @@
-// Camera-facing ribbons, at least a pixel wide; light that reaches each point is found here, shading is per fragment.
+// Camera-facing ribbons, at least a pixel wide. Points are close on the screen, so shading is per point: a fragment
+// of a hair is cheap, and there are very many.
 #include "frame.glsl"
 #include "random.glsl"
 #include "strand_buffer.glsl"
 #ifdef SHADOWS
 #include "visibility.glsl"
 #endif
-out vec3 worldPosition;
-out vec3 tangent;
-out vec3 baseColor;
-out vec3 reach[3];             // light that arrives from key, fill and rim, by colour
-out vec3 sky;
+#include "fibre.glsl"
+out vec3 shaded;
 out float coverage;            // width over the ribbon's width
 flat out uint seed;
 
@@ -19,8 +17,7 @@ vec3 throughHair(float depth, vec3 c) { return exp(-depth * shadowRight.w * (1.0
 void main() {
   StrandPoint p = strandPoints[gl_VertexID >> 1];
   seed = floatBitsToUint(p.tangentSeed.w);
-  worldPosition = p.positionWidth.xyz;
-  tangent = p.tangentSeed.xyz;
+  vec3 worldPosition = p.positionWidth.xyz, tangent = p.tangentSeed.xyz;
   vec3 toEye = eye.xyz - worldPosition;
   float depth = max(-dot(toEye, viewForward.xyz), viewForward.w);
   float pixel = eye.w * depth;
@@ -38,8 +35,10 @@ void main() {
   vec3 c = hairColor.w > 0.5 ? p.colorAlong.rgb : hairColor.rgb;
   float shade = random3(seed, 1u, 7u), warmth = random3(seed, 2u, 7u) - 0.5;
   c *= mix(0.72, 1.28, shade) * mix(0.85, 1.12, p.colorAlong.w);
-  baseColor = clamp(c * (1.0 + warmth * vec3(0.16, 0.0, -0.16)), 0.0, 1.0);
+  vec3 baseColor = clamp(c * (1.0 + warmth * vec3(0.16, 0.0, -0.16)), 0.0, 1.0);
 
+  vec3 reach[3] = vec3[3](vec3(1), vec3(1), vec3(1));  // of the light of key, fill and rim
+  float sky = 1.0;
 #ifdef SHADOWS
   uint frame = uint(viewport.z);
   float a = 6.2831853 * random3(seed, uint(gl_VertexID >> 1), frame), r = 1.6 * sqrt(random3(seed, frame, 3u));
@@ -48,8 +47,15 @@ void main() {
   reach[0] = key.y * throughHair(key.x, baseColor);
   reach[1] = throughHair(volume.y, baseColor);
   reach[2] = throughHair(volume.z, baseColor);
-  sky = vec3(volume.w);
-#else
-  reach[0] = reach[1] = reach[2] = sky = vec3(1);
+  sky = volume.w;
 #endif
+
+  vec3 v = toEye / max(length(toEye), 1e-20);
+  float shift = (random3(seed, 5u, 7u) - 0.5) * 0.10;
+  float upness = 0.5 + 0.5 * sqrt(max(1.0 - pow(dot(tangent, viewUp.xyz), 2.0), 0.0));
+  shaded = mix(groundColor.rgb, skyColor.rgb, upness) * baseColor * (0.8 * sky);
+  for (int l = 0; l < 3; ++l) {
+    shaded += lightColor[l].rgb * reach[l] * scatter(tangent, lightDirection[l].xyz, v, baseColor, shift);
+  }
+  shaded = min(shaded, vec3(8.0));
 }

@@ -11,9 +11,9 @@ namespace coif::preview {
 namespace {
 
 constexpr double kTolerancePx = 0.3;
-constexpr double kLongestPx = 24;
-constexpr double kRibbonPx = 0.9;            // the level of detail widens hairs to about this
-constexpr std::size_t kLeastStrands = 2000;  // below, single hairs are told apart
+constexpr double kLongestPx = 32;
+constexpr double kRibbonPx = 0.4;             // the level of detail widens hairs to about this
+constexpr std::size_t kLeastStrands = 12000;  // below, single hairs are told apart
 constexpr float kDefaultWidthM = 8e-5f;
 
 float widthOf(const StrandSet& strands, std::size_t point) {
@@ -97,8 +97,8 @@ std::size_t prefixLength(const StrandSet& strands, const View& view, const Detai
   if (looked == 0) return count;
   const double share = width / double(looked) / kRibbonPx;
   const double bound = double(detail.maxSegments) / std::max(segments / double(looked), 1.0);
-  const double wanted = std::min(double(count) * std::min(share, 1.0), bound);
-  return std::clamp(std::size_t(wanted), std::min(kLeastStrands, count), count);
+  const double wanted = std::min(std::max(double(count) * share, double(kLeastStrands)), bound);
+  return std::clamp(std::size_t(wanted), std::size_t{1}, count);
 }
 
 }  // namespace

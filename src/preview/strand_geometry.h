@@ -41,7 +41,7 @@ struct DetailOptions {
 
 /// With lod: a prefix of the strands (they are in progressive order), so long that the mean ribbon is about a
 /// pixel wide and the bound holds; widened so that their summed area stays; points dropped while the curve
-/// moves by less than 0.3 pixel and no segment exceeds 24 pixels. Without: everything. A strand with a value
+/// moves by less than 0.3 pixel and no segment exceeds 32 pixels. Without: everything. A strand with a value
 /// that is not finite or with fewer than two points is dropped and counted. Same result for any number of
 /// threads.
 StrandGeometry makeStrandGeometry(const StrandSet& strands, const View& view, const DetailOptions& detail,

@@ -48,9 +48,9 @@ struct PreviewScene {
 struct PreviewOptions {
   int width = 1024, height = 1024;                 ///< pixels, 1 … 8192
   int subframes = 4;                               ///< 1 … 64, four samples a pixel each
-  Vec3f hairColor = Vec3f(0.23f, 0.115f, 0.055f);  ///< linear RGB where the strands have no colours
+  Vec3f hairColor = Vec3f(0.085f, 0.036f, 0.016f);  ///< linear RGB where the strands have no colours
   Vec3f headColor = Vec3f(0.50f, 0.40f, 0.34f);
-  Vec3f backgroundTop = Vec3f(0.20f, 0.215f, 0.24f), backgroundBottom = Vec3f(0.055f, 0.058f, 0.065f);
+  Vec3f backgroundTop = Vec3f(0.135f, 0.145f, 0.165f), backgroundBottom = Vec3f(0.03f, 0.032f, 0.037f);
   bool transparentBackground = false;  ///< alpha is then the coverage
   bool shadows = true;
   bool lod = true;              ///< fewer, wider strands and fewer points where no one could tell
