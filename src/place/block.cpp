@@ -8,7 +8,9 @@ namespace coif::placing {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // rows a task: below it a task costs more than it saves
+// Rows a task: about a tenth of a millisecond of work, so that a busy machine's late threads cost little.
+constexpr std::size_t kProductGrain = 8192;
+constexpr std::size_t kVectorGrain = 65536;
 
 // Calls body with the number of columns as a constant for the two counts that occur (a drag, a position), so
 // that the inner loops unroll.
@@ -23,7 +25,7 @@ void withColumns(Eigen::Index columns, const Body& body) {
 
 void multiply(const Csr& matrix, const Block& x, Block& y, const Context& context) {
   withColumns(x.cols(), [&](const auto m) {
-    parallelFor(context, matrix.rows(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(context, matrix.rows(), kProductGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
         double* out = y.data() + row * m;
         for (std::size_t c = 0; c < m; ++c) out[c] = 0;
@@ -39,15 +41,15 @@ void multiply(const Csr& matrix, const Block& x, Block& y, const Context& contex
 
 Sums dots(const Block& a, const Block& b, const Context& context) {
   const std::size_t rows = std::size_t(a.rows());
-  std::vector<Sums> partial((rows + kGrain - 1) / kGrain);
+  std::vector<Sums> partial((rows + kVectorGrain - 1) / kVectorGrain);
   withColumns(a.cols(), [&](const auto m) {
-    parallelFor(context, rows, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(context, rows, kVectorGrain, [&](std::size_t begin, std::size_t end) {
       Sums sum = Sums::Zero(a.cols());
       for (std::size_t row = begin; row < end; ++row) {
         for (std::size_t c = 0; c < m; ++c)
           sum[Eigen::Index(c)] += a.data()[row * m + c] * b.data()[row * m + c];
       }
-      partial[begin / kGrain] = sum;
+      partial[begin / kVectorGrain] = sum;
     });
   });
   Sums total = Sums::Zero(a.cols());
@@ -59,7 +61,7 @@ Sums dots(const Block& a, const Block& b, const Context& context) {
 
 void addScaled(Block& y, const Block& x, const Sums& scale, const Context& context) {
   withColumns(y.cols(), [&](const auto m) {
-    parallelFor(context, std::size_t(y.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(context, std::size_t(y.rows()), kVectorGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
         for (std::size_t c = 0; c < m; ++c)
           y.data()[row * m + c] += x.data()[row * m + c] * scale[Eigen::Index(c)];
@@ -70,7 +72,7 @@ void addScaled(Block& y, const Block& x, const Sums& scale, const Context& conte
 
 void scaleAndAdd(Block& p, const Block& z, const Sums& scale, const Context& context) {
   withColumns(p.cols(), [&](const auto m) {
-    parallelFor(context, std::size_t(p.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(context, std::size_t(p.rows()), kVectorGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
         for (std::size_t c = 0; c < m; ++c) {
           double& out = p.data()[row * m + c];

@@ -22,7 +22,7 @@ std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh) {
   return root;
 }
 
-constexpr std::size_t kRowGrain = 64;  // columns of the box a task
+constexpr std::size_t kCellGrain = 32768;  // cells of the box a task
 
 }  // namespace
 
@@ -197,18 +197,19 @@ void BoxInverse::apply(const Block& r, Block& z, const Context& context) const {
     for (const std::size_t cell : level.anchors()) cells.row(Eigen::Index(cell)) -= sum;
   }
   laplacian_->solve(box, context);
-  parallelFor(context, columns_.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t column = begin; column < end; ++column) {
-      // Thomas' algorithm for tridiag(−1, 2, −1): its pivots are (k + 2) / (k + 1).
-      const Eigen::Index first = Eigen::Index(column * maxLayers_), n = columns_[column].layers;
-      for (Eigen::Index k = 1; k < n; ++k)
-        cells.row(first + k) += cells.row(first + k - 1) * (double(k) / double(k + 1));
-      for (Eigen::Index k = n - 1; k >= 0; --k) {
-        if (k + 1 < n) cells.row(first + k) += cells.row(first + k + 1);
-        cells.row(first + k) *= double(k + 1) / double(k + 2);
-      }
-    }
-  });
+  parallelFor(context, columns_.size(), std::max<std::size_t>(1, kCellGrain / maxLayers_),
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t column = begin; column < end; ++column) {
+                  // Thomas' algorithm for tridiag(−1, 2, −1): its pivots are (k + 2) / (k + 1).
+                  const Eigen::Index first = Eigen::Index(column * maxLayers_), n = columns_[column].layers;
+                  for (Eigen::Index k = 1; k < n; ++k)
+                    cells.row(first + k) += cells.row(first + k - 1) * (double(k) / double(k + 1));
+                  for (Eigen::Index k = n - 1; k >= 0; --k) {
+                    if (k + 1 < n) cells.row(first + k) += cells.row(first + k + 1);
+                    cells.row(first + k) *= double(k + 1) / double(k + 2);
+                  }
+                }
+              });
   for (const Level& level : levels_) {
     Sums sum = Sums::Zero(m);
     for (const std::size_t cell : level.anchors()) sum += cells.row(Eigen::Index(cell));
