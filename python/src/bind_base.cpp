@@ -52,7 +52,9 @@ void bindErrors(nb::module_& m) {
 }
 
 /// str(object).
-std::string textOf(nb::handle object) { return nb::str(object).c_str(); }
+std::string textOf(nb::handle object) {
+  return nb::str(object).c_str();
+}
 
 std::string shapeText(std::initializer_list<int> shape) {
   std::string text = "(";
@@ -106,8 +108,8 @@ InputArray<T> toArray(const ArrayLike& value, const char* argument, std::initial
     fits = wanted < 0 || nb::cast<std::int64_t>(found[i]) == wanted;
   }
   if (!fits) {
-    const std::string message = std::string(argument) + ": expected an array of shape " + shapeText(shape) +
-                                ", got " + textOf(found);
+    const std::string message =
+        std::string(argument) + ": expected an array of shape " + shapeText(shape) + ", got " + textOf(found);
     throw nb::value_error(message.c_str());
   }
   return nb::cast<InputArray<T>>(array);

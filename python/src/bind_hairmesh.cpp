@@ -4,8 +4,10 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include "bind_scalp.h"
 #include "coif/hairmesh/invariants.h"
 
 namespace coif::python {
@@ -121,6 +123,34 @@ std::tuple<nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 4>, nb::c_contig>
   return {{ids->data(), {exposed.size(), 4}, owner}, flags(exposed)};
 }
 
+/// The root layer: a cage, or faces of the scalp's own mesh.
+Model fromScalp(const ScalpModel& scalp, std::optional<std::variant<Cage, ArrayLike>> faces) {
+  if (!faces) faces = makeCage(scalp, std::nullopt, {});
+  const auto rootOf = [](const auto& mesh, const std::vector<std::uint32_t>& offsets) {
+    return Model(take(HairMesh::fromRoot(mesh.positions, offsets, mesh.corners)));
+  };
+  Model model;
+  if (const auto* cage = std::get_if<Cage>(&*faces)) {
+    model = rootOf(*cage, cage->faceOffsets);
+  } else {
+    const PolygonMesh& head = scalp.surface->mesh();
+    PolygonMesh root;
+    root.positions = head.positions;
+    for (const std::uint32_t f : toIndices(std::get<ArrayLike>(*faces), "faces")) {
+      if (f >= head.faceCount()) {
+        throw ErrorException(
+            makeError(ErrorCode::NotFound, "the scalp has no such face", "face " + std::to_string(f)));
+      }
+      root.addFace(head.face(f));
+    }
+    model = rootOf(root, root.faceOffsets);
+  }
+  model.head = scalp.surface;
+  model.upAxis = scalp.surface->mesh().upAxis;
+  if (const double unit = scalp.surface->mesh().metersPerUnit; unit > 0) model.metersPerUnit = unit;
+  return model;
+}
+
 void bindMaking(nb::class_<Model>& c) {
   c.def_static(
        "from_root",
@@ -136,6 +166,12 @@ void bindMaking(nb::class_<Model>& c) {
        "split.\n\n"
        "Raises Error for edges of three or more faces, inconsistent winding, indices out of range or values "
        "not finite.")
+      .def_static("from_scalp", &fromScalp, "scalp"_a, "faces"_a.none() = nb::none(),
+                  "The root layer on a head: a Cage, faces of the head's own mesh by index, or (None) a cage "
+                  "of about 200 quads\n"
+                  "on the hair-bearing part. The mesh remembers the head: grow() lays roots on it.\n\n"
+                  "Raises Error for faces that do not exist or do not make a root layer.")
+
       .def(
           "copy", [](const Model& model) { return Model(model); }, "A copy with a history of its own.")
       .def("__copy__", [](const Model& model) { return Model(model); })

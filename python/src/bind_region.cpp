@@ -244,6 +244,25 @@ void bindScalpClass(nb::module_& m) {
           "up, forward, forehead_line and nape_line (heights, of chin to crown) and ear_clearance (radians) "
           "steer the\n"
           "automatic one. Raises Error for unknown names, faces out of range or an empty region.")
+      .def(
+          "cage",
+          [](const ScalpModel& s, int count, const std::optional<Region>& region, bool exact, bool mirror,
+             int smoothing) {
+            CageOptions options;
+            options.count = count;
+            options.exact = exact;
+            options.useMirror = mirror;
+            options.smoothing = smoothing;
+            return makeCage(s, region, options);
+          },
+          "count"_a = CageOptions{}.count, "region"_a.none() = nb::none(), nb::kw_only(), "exact"_a = false,
+          "mirror"_a = true, "smoothing"_a = CageOptions{}.smoothing,
+          "A coarse Cage of about `count` quads on `region` (None: the hair-bearing part, found by "
+          "itself).\n\n"
+          "exact: the region's own polygons instead of a grid. mirror: symmetric where the head is. "
+          "smoothing: rounds\n"
+          "at most. Raises Error for a region that is empty, closed, a ring or has a handle, saying what to "
+          "do.")
       .def("__repr__", [](const ScalpModel& s) {
         return "<coif.Scalp: " + std::to_string(s.surface->mesh().faceCount()) + " faces" +
                (s.path.empty() ? "" : " from " + s.path.string()) + ">";
@@ -261,6 +280,7 @@ void bindRegions(nb::module_& m) {
   bindMeshReport(m);
   bindFrame(m);
   bindRegion(m);
+  bindCage(m);
   bindScalpClass(m);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bind.h"
+#include "coif/scalp/cage.h"
 #include "coif/scalp/region.h"
 #include "coif/scalp/surface.h"
 
@@ -16,6 +17,10 @@ struct ScalpModel {
   std::filesystem::path path;
 };
 
+/// The cage on a region of the scalp, or on its automatic cap.
+Cage makeCage(const ScalpModel& scalp, const std::optional<Region>& region, const CageOptions& options);
+
 void bindRegions(nb::module_& m);
+void bindCage(nb::module_& m);
 
 }  // namespace coif::python

@@ -1,0 +1,60 @@
+"""Pictures as arrays."""
+
+import numpy as np
+import pytest
+
+coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
+if not hasattr(coif, "render"):
+    pytest.skip("built without the preview room", allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def preview():
+    try:
+        return coif.Preview()
+    except coif.Error as error:
+        pytest.skip(f"no OpenGL here: {error}")
+
+
+def test_a_picture_shows_the_strands_where_they_are(preview):
+    """Many strands in the right half of the view only: coverage there, none on the left."""
+    rng = np.random.default_rng(2)
+    roots = np.c_[rng.uniform(0.2, 0.9, 4000), rng.uniform(-0.9, 0.9, 4000), np.zeros(4000)]
+    points = roots[:, None, :] + np.array([[0, 0, 0], [0, 0.05, 0], [0, 0.1, 0]])
+    strands = coif.StrandSet(points)
+    strands.widths = np.full(strands.point_count, 0.02)
+    camera = coif.Camera((0, 0, 5), (0, 0, 0), fov=2 * np.degrees(np.arctan(0.2)))  # sees y from -1 to 1
+    image = coif.render(strands, size=(160, 80), camera=camera, transparent=True, preview=preview)
+    assert image.shape == (80, 160, 4) and image.dtype == np.uint8
+    alpha = image[..., 3] / 255
+    assert alpha[:, :80].max() == 0
+    assert alpha[8:72, 96:112].mean() > 0.5
+
+
+def test_the_hair_has_the_colour_that_was_asked_for(preview, tuft):
+    strands = coif.grow(tuft, count=3000, width=0.02)
+    for channel in range(3):
+        color = [0.02, 0.02, 0.02]
+        color[channel] = 0.5
+        image = coif.render(strands, size=(64, 64), hair_color=color, transparent=True, preview=preview)
+        mean = image[image[..., 3] > 200][:, :3].mean(axis=0)
+        assert mean.argmax() == channel
+
+
+def test_pictures_are_written_as_png(preview, tuft, tmp_path):
+    image = coif.render(hair_mesh=tuft, size=(32, 24), preview=preview)
+    coif.save_png(tmp_path / "mesh.png", image)
+    data = (tmp_path / "mesh.png").read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    assert int.from_bytes(data[16:20], "big") == 32 and int.from_bytes(data[20:24], "big") == 24
+
+
+def test_bad_arguments_are_refused(preview, tuft, tmp_path):
+    with pytest.raises(ValueError):
+        coif.render(preview=preview)
+    with pytest.raises(ValueError):
+        coif.render(hair_mesh=tuft, size=(0, 10), preview=preview)
+    with pytest.raises(ValueError):
+        coif.save_png(tmp_path / "x.png", np.zeros((4, 4, 3), np.uint8))
+    with pytest.raises(ValueError):
+        coif.save_png(tmp_path / "x.png", np.full((4, 4, 4), 256))
