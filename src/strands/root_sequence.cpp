@@ -98,9 +98,14 @@ std::span<const Vec2f> progressiveTile() {
 RootSequence::RootSequence(const RootFace& face, std::uint64_t seed, BundleId bundle)
     : face_(face), tile_(progressiveTile()) {
   const CounterRandom random(seed, std::uint64_t(bundle));
-  shift_ = Vec2(random.uniform(0), random.uniform(1));
   symmetry_ = random.below(2, 8);
-  side_ = (face.hi() - face.lo()).maxCoeff();
+  const Vec2 size = face.hi() - face.lo();
+  side_ = size.maxCoeff();
+  // The first root falls in the middle half of the face's box, so that few roots keep apart across faces too.
+  const Vec2 first =
+      (Vec2(random.uniform(0), random.uniform(1)) / 2 + Vec2(0.25, 0.25)).cwiseProduct(size / side_);
+  shift_ = Vec2::Zero();
+  shift_ = first - tilePoint(0);
   sliver_ = face.triangulated() || face.area() < kThinnest * side_ * side_;
 }
 

@@ -6,9 +6,9 @@
 
 #include "coif/base/check.h"
 #include "coif/base/parallel.h"
-#include "coif/base/random.h"
 #include "coif/scalp/polygon_mesh.h"
 #include "coif/strands/root_face.h"
+#include "root_offsets.h"
 #include "root_sequence.h"
 
 namespace coif {
@@ -127,19 +127,16 @@ class RootPlacer {
     return ground;
   }
 
-  double offset(std::size_t b) const {
-    return CounterRandom(options_.seed, std::uint64_t(mesh_.bundles()[b].id)).uniform(3);
-  }
-
   /// The first `count` claims. All claims up to (count + live bundles)/Σ weight are at least count many.
   void merge() {
     std::size_t live = 0;
     for (const Ground& ground : grounds_) live += ground.weight > 0;
     const double last = (double(options_.count) + double(live)) / totalWeight_ * (1 + 1e-12);
+    const std::vector<double> offsets = rootOffsets(mesh_, options_.seed);
     claims_.reserve(options_.count + 2 * live);
     for (std::size_t b = 0; b < grounds_.size(); ++b) {
       if (!(grounds_[b].weight > 0)) continue;
-      const double start = offset(b), step = 1 / grounds_[b].weight;
+      const double start = offsets[b], step = 1 / grounds_[b].weight;
       for (std::uint32_t n = 0;; ++n) {
         const double key = (double(n) + start) * step;
         if (key > last) break;

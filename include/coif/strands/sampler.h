@@ -57,6 +57,8 @@ class StrandSampler {
     std::size_t begin, size;
   };
 
+  template <class Write>
+  void forEachStrand(const Context& context, const Write& write) const;
   void planAdaptive(const Context& context);
   std::vector<std::uint32_t> planBundle(std::size_t bundle);
   std::vector<double> intervalsOf(const Bundle& bundle) const;

@@ -12,26 +12,26 @@
 
 namespace coif {
 
-/// S strands, P points in all; strand s has points [offsets[s], offsets[s+1]), root first. Positions in scene units,
-/// float. Arrays marked optional are empty or of the stated length.
+/// S strands, P points in all; strand s has points [offsets[s], offsets[s+1]), root first. Positions in scene
+/// units, float. Arrays marked optional are empty or of the stated length.
 struct StrandSet {
-  std::vector<std::uint64_t> offsets{0};       ///< S + 1
-  std::vector<Vec3f> points;                   ///< P, row-major xyz, no padding
-  std::vector<float> widths;                   ///< P diameters, optional
-  std::vector<std::uint64_t> ids;              ///< S stable ids, optional
-  std::vector<std::uint32_t> rootFaces;        ///< S bundle ids (BundleId), optional
-  std::vector<std::uint64_t> weightOffsets;    ///< S + 1 into weights, optional
-  std::vector<float> weights;                  ///< mean value coordinates of the root in its face, optional
-  std::vector<Vec2f> rootUvs;                  ///< S, optional
-  std::vector<std::uint32_t> groups;           ///< S indices into groupNames, optional
-  std::vector<std::uint8_t> guides;            ///< S flags, 1 = guide, optional
-  std::vector<Vec3f> colors;                   ///< P linear RGB, optional
-  std::vector<float> transparencies;           ///< P, 0 opaque, optional
+  std::vector<std::uint64_t> offsets{0};     ///< S + 1
+  std::vector<Vec3f> points;                 ///< P, row-major xyz, no padding
+  std::vector<float> widths;                 ///< P diameters, optional
+  std::vector<std::uint64_t> ids;            ///< S stable ids, optional
+  std::vector<std::uint32_t> rootFaces;      ///< S bundle ids (BundleId), optional
+  std::vector<std::uint64_t> weightOffsets;  ///< S + 1 into weights, optional
+  std::vector<float> weights;                ///< mean value coordinates of the root in its face, optional
+  std::vector<Vec2f> rootUvs;                ///< S, optional
+  std::vector<std::uint32_t> groups;         ///< S indices into groupNames, optional
+  std::vector<std::uint8_t> guides;          ///< S flags, 1 = guide, optional
+  std::vector<Vec3f> colors;                 ///< P linear RGB, optional
+  std::vector<float> transparencies;         ///< P, 0 opaque, optional
   std::vector<std::string> groupNames;
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;
-  std::string information;                     ///< free text that some formats carry (.hair: 87 bytes at most)
-  std::vector<std::string> notes;              ///< what a reader left out or had to assume, a sentence each
+  std::string information;         ///< free text that some formats carry (.hair: 87 bytes at most)
+  std::vector<std::string> notes;  ///< what a reader left out or had to assume, a sentence each
 
   std::size_t strandCount() const { return offsets.size() - 1; }
   std::size_t pointCount() const { return points.size(); }
@@ -42,8 +42,8 @@ struct StrandSet {
 };
 static_assert(sizeof(Vec3f) == 12 && sizeof(Vec2f) == 8, "the arrays are handed out without padding");
 
-/// Refuses offsets that do not ascend or do not end at P, arrays of the wrong length, group indices out of range;
-/// with `requireFinite`, points or widths that are not finite. Names the strand.
+/// Refuses offsets that do not ascend or do not end at P, arrays of the wrong length, group indices out of
+/// range; with `requireFinite`, points or widths that are not finite. Names the strand.
 Status validate(const StrandSet& strands, bool requireFinite = true);
 
 }  // namespace coif
