@@ -1,0 +1,98 @@
+// Geometric editing of a hair mesh: selections, moves with soft falloff, smoothing, mirror symmetry.
+//
+// Nothing here changes topology or places internal vertices (place.h does). Vertices and bundles are given by
+// index, as the mesh has them now; lists ascend. Indices out of range and values not finite are errors, and
+// then the mesh is unchanged. Cost: linear in the mesh unless stated.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coif/hairmesh/hair_mesh.h"
+
+namespace coif {
+
+/// A weight in [0, 1] for each vertex of the mesh, by index.
+using VertexWeights = std::vector<double>;
+
+// Selections.
+std::vector<std::uint32_t> verticesOfLayer(const HairMesh& mesh, std::uint32_t layer);
+/// Vertices of a bundle's faces; of one layer when `layer` is not kNone.
+Result<std::vector<std::uint32_t>> verticesOfBundle(const HairMesh& mesh, BundleId bundle,
+                                                    std::uint32_t layer = kNone);
+/// A vertex, its ancestors down to the root and all its descendants.
+Result<std::vector<std::uint32_t>> columnOf(const HairMesh& mesh, std::uint32_t vertex);
+/// Bundles that shared edges connect to `bundle` on `layer`, by index.
+Result<std::vector<std::uint32_t>> connectedBundles(const HairMesh& mesh, BundleId bundle,
+                                                    std::uint32_t layer = 0);
+/// A strip of quads on the root layer: from a side across opposite sides both ways, until a face that is no
+/// quad, the border, or the start again. Bundles by index, in strip order.
+Result<std::vector<std::uint32_t>> quadStrip(const HairMesh& mesh, EdgeRef side);
+
+/// 1 on the selection, falling smoothly (3s² − 2s³) to 0 at `radius` from the nearest selected vertex; radius
+/// 0: the selection alone. Cost: selection × mesh.
+Result<VertexWeights> softSelection(const HairMesh& mesh, std::span<const std::uint32_t> selection,
+                                    double radius = 0);
+
+// Moves. A vertex of weight w goes the fraction w of the way.
+Status translate(HairMesh& mesh, const VertexWeights& weights, const Vec3& by);
+Status scale(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& factors);
+/// By w times the angle, about the axis (any length > 0) through the pivot, right-handed.
+Status rotate(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& axis,
+              double angleRad);
+/// Laplacian steps within each layer: a vertex goes `strength` in [0, 1] times its weight towards the mean of
+/// its edge neighbours. A vertex at the end of a boundary edge only looks at boundary edges.
+Status smooth(HairMesh& mesh, const VertexWeights& weights, double strength = 0.5, int steps = 1);
+
+/// Which elements are each other's image in a mirror plane; found on the root layer by position, above by
+/// topology.
+struct Mirror {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitX();  ///< unit length
+  std::vector<std::uint32_t>
+      vertexPartner;  ///< by vertex index; itself on the plane, kNone without a partner
+  std::vector<std::uint32_t> bundlePartner;  ///< by bundle index; itself when it crosses the plane
+  std::vector<std::uint32_t> cornerPartner;  ///< by bundle: the partner's corner that corner 0 maps to; the
+                                             ///< corners then run backwards
+  Vec3 image(const Vec3& p) const { return p - 2 * (p - point).dot(normal) * normal; }
+  bool complete() const;  ///< has every vertex and bundle a partner?
+};
+
+/// Root vertices are partners when each is the nearest to the other's image within `tolerance` (scene units);
+/// bundles when their root corners are partners in opposite order; higher vertices when all their corners
+/// agree. Errors: InvalidArgument for a normal of no length or a tolerance not > 0.
+Result<Mirror> findMirror(const HairMesh& mesh, const Vec3& point, const Vec3& normal, double tolerance);
+
+/// The same face or edge on the other side; NotFound when it has no partner.
+Result<FaceRef> mirrored(const HairMesh& mesh, const Mirror& mirror, FaceRef face);
+Result<EdgeRef> mirrored(const HairMesh& mesh, const Mirror& mirror, EdgeRef edge);
+/// A selection and its mirror image, each bundle once: what a symmetric extrude, delete or subdivide is
+/// given.
+Result<std::vector<BundleId>> withMirrored(const HairMesh& mesh, const Mirror& mirror,
+                                           std::span<const BundleId> ids);
+
+/// Moves vertices by displacements (one a vertex) and their partners by the mirrored ones; vertices on the
+/// plane stay on it. Where both of a pair are displaced, each side moves by the sum of its own and the
+/// other's image.
+Status moveSymmetrically(HairMesh& mesh, const Mirror& mirror, std::span<const Vec3> displacements);
+
+/// Puts every vertex whose root ancestor is behind the plane (the side the normal leaves) at its partner's
+/// image, and vertices that are their own partners on the plane. Returns the number of vertices without a
+/// partner, left alone.
+Result<std::size_t> symmetrise(HairMesh& mesh, const Mirror& mirror);
+
+/// Applies a topological operation to an edge or face and to its partner, or to neither: operation(mesh, ref)
+/// returns a Result. A self-mirrored one is done once.
+template <class Ref, class Operation>
+Status applySymmetrically(HairMesh& mesh, const Mirror& mirror, Ref ref, Operation&& operation) {
+  COIF_ASSIGN(const Ref partner, mirrored(mesh, mirror, ref));
+  HairMesh copy = mesh;
+  if (const auto first = operation(copy, ref); !first.ok()) return first.error();
+  if (partner != ref) {
+    if (const auto second = operation(copy, partner); !second.ok()) return second.error();
+  }
+  mesh = std::move(copy);
+  return {};
+}
+
+}  // namespace coif
