@@ -172,7 +172,8 @@ Result<Cage> gridCage(const Surface& surface, const Region& region, const CageOp
       const PatchPoint& place = places[cage.vertexAt(i, j)];
       cage.points.push_back(onSurface(surface, patch, place, locator.position(place)));
       cage.positions.push_back(cage.points.back().position);
-      cage.uv.emplace_back(2.0 * i / size.columns - 1, 2.0 * j / size.rows - 1);
+      // In this form left and right differ in sign alone.
+      cage.uv.emplace_back((2.0 * i - size.columns) / size.columns, (2.0 * j - size.rows) / size.rows);
       cage.grid.push_back({i, j});
       cage.boundary.push_back(i == 0 || j == 0 || i == size.columns || j == size.rows);
       if (!cage.mirror) continue;

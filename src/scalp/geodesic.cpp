@@ -41,7 +41,7 @@ class Marcher {
     while (!queue_.empty()) {
       const auto [d, v] = queue_.top();
       queue_.pop();
-      if (done_[v]) continue;
+      if (d > distance_[v]) continue;
       done_[v] = 1;
       for (std::uint32_t t : trianglesAt(v)) update(v, t);
     }
@@ -67,7 +67,8 @@ class Marcher {
   const Vec3& position(std::uint32_t v) const { return surface_.mesh().positions[v]; }
 
   void offer(std::uint32_t v, double d) {
-    if (!(d < distance_[v]) || done_[v]) return;
+    // A gain of rounding's size is none, or it would go round in circles.
+    if (!(d < distance_[v] * (1 - 1e-12))) return;
     distance_[v] = d;
     queue_.emplace(d, v);
   }
@@ -75,7 +76,7 @@ class Marcher {
   void update(std::uint32_t settled, std::uint32_t triangle) {
     const auto v = names(triangle);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (v[k] == settled || done_[v[k]]) continue;
+      if (v[k] == settled) continue;
       const std::uint32_t other = v[(k + 1) % 3] == settled ? v[(k + 2) % 3] : v[(k + 1) % 3];
       offer(v[k], distance_[settled] + (position(v[k]) - position(settled)).norm());
       if (other != settled && other != v[k] && done_[other]) offer(v[k], across(settled, other, v[k]));
