@@ -11,14 +11,14 @@ vec3 scatter(vec3 t, vec3 toLight, vec3 toEye, vec3 c, float shift) {
   float cosPhi = clamp(dot(l, e) * inversesqrt(max(dot(l, l) * dot(e, e), 1e-12)), -1.0, 1.0);
   float cosHalf = sqrt(0.5 + 0.5 * cosPhi);
   const float kDegree = 0.01745329;
-  float mR = lobe(half_ + 7.0 * kDegree + shift, 7.5 * kDegree);
+  float mR = lobe(half_ + 7.0 * kDegree + shift, 6.0 * kDegree);
   float mTT = lobe(half_ - 3.5 * kDegree + shift, 6.0 * kDegree);
-  float mTRT = lobe(half_ - 10.0 * kDegree + shift, 14.0 * kDegree);
+  float mTRT = lobe(half_ - 10.0 * kDegree + shift, 11.0 * kDegree);
   vec3 absorbed = pow(c, vec3(0.45));
-  float nR = 0.26 * cosHalf * (0.06 + 0.94 * pow(1.0 - cosD * cosHalf, 5.0));
+  float nR = 0.17 * cosHalf * (0.06 + 0.94 * pow(1.0 - cosD * cosHalf, 5.0));
   float nTT = 0.6 * exp(-9.0 * (1.0 + cosPhi));
-  float nTRT = 0.20 * (0.4 + 0.6 * max(cosPhi, 0.0));
+  float nTRT = 0.24 * (0.4 + 0.6 * max(cosPhi, 0.0));
   vec3 specular = (mR * nR + mTT * nTT * absorbed + mTRT * nTRT * absorbed * absorbed) / (cosD * cosD) * cosI;
-  vec3 diffuse = c * (0.42 * cosI) * (0.5 + 0.5 * cosPhi);
+  vec3 diffuse = c * (0.38 * cosI) * (0.5 + 0.5 * cosPhi);
   return specular + diffuse;
 }

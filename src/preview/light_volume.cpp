@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCells = 80;            // along the longest side of the hair's box
 constexpr float kHeadOptical = 2.5f;  // of a cell that the head's surface crosses
-constexpr float kSkyOpacity = 0.45f;  // part of the extinction that the diffuse light of the sky feels
+constexpr float kSkyOpacity = 0.30f;  // part of the extinction that the diffuse light of the sky feels
 
 std::size_t cellIndex(const LightVolume& grid, const Vec3& p) {
   const Vec3 c = (p - grid.lo) / grid.cell;

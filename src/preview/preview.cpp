@@ -31,7 +31,7 @@ struct Preview::Impl {
 
 namespace {
 
-constexpr std::size_t kSoftwareSegments = 700000, kHardwareSegments = 12000000;
+constexpr std::size_t kSoftwareSegments = 450000, kHardwareSegments = 12000000;
 constexpr int kSoftwareMap = 1024, kHardwareMap = 2048;
 
 Status checkOptions(const PreviewOptions& options) {

@@ -111,8 +111,8 @@ double fineness(const Vec3& p) {
   const Vec3 m(std::abs(p.x()), p.y(), p.z());
   const auto bump = [&](const Vec3& c, double r) { return std::exp(-(m - c).squaredNorm() / (r * r)); };
   const double neck = std::clamp((2 - p.y()) / 4, 0.0, 1.0);
-  return 1 - 0.5 * neck + 4.0 * bump({8.2, 10.4, -2.2}, 3.2) + 3.0 * bump({0, 8.5, 10.5}, 3) +
-         2.5 * bump({3, 11.6, 8}, 2.3) + 2.5 * bump({0, 5.2, 9}, 2.6);
+  return 1 - 0.5 * neck + 8.0 * bump({8.2, 10.4, -2.2}, 3.2) + 5.0 * bump({0, 8.5, 10.5}, 3) +
+         4.0 * bump({3, 11.6, 8}, 2.3) + 4.0 * bump({0, 5.2, 9}, 2.6);
 }
 
 std::vector<std::vector<std::uint32_t>> neighbours(const BoxLattice& box) {
@@ -182,7 +182,7 @@ PolygonMesh makeExampleHead(int resolution) {
     const Vec3& p = positions[v];
     positions[box.mirror(std::uint32_t(v))] = Vec3(-p.x(), p.y(), p.z());
   }
-  relax(box, positions, 2 * r);
+  relax(box, positions, 3 * r);
 
   PolygonMesh mesh;
   mesh.metersPerUnit = 0.01;

@@ -74,9 +74,9 @@ double mouth(double d, const Vec3& p) {
 double neck(double d, const Vec3& p) {
   const Vec3 q(p.x() * 1.06, p.y(), p.z());
   double n = limb(q, {0, -9, -3.4}, {0, 9, -2.6}, 5.7, 5.4);
-  n = unite(n, limb(p, {5.6, 7.5, -2.2}, {1.3, -7.5, 2.6}, 0.9, 0.8), 1.6);    // sternomastoid
-  n = unite(n, limb(p, {2.8, 1.5, -5.4}, {10.5, -9.6, -4.2}, 2.2, 2.4), 3.5);  // trapezius
-  n = unite(n, ellipsoid(p, {0, -10.8, -2.8}, {13.5, 4.6, 6.6}), 3.0);         // shoulders
+  n = unite(n, limb(p, {5.6, 7.5, -2.2}, {1.3, -6.5, 3.0}, 0.9, 0.7), 1.8);   // sternomastoid
+  n = unite(n, limb(p, {2.8, 1.5, -5.4}, {9.0, -9.6, -4.0}, 2.0, 2.2), 4.0);  // trapezius
+  n = unite(n, ellipsoid(p, {0, -10.8, -2.4}, {13.0, 6.6, 8.0}), 4.0);        // shoulders
   return unite(d, n, 1.4);
 }
 
@@ -97,14 +97,14 @@ double ear(double d, const Vec3& p) {
   const Vec3 s(e.x() / width, e.y() / 3.15, e.z());
   const double rho = std::sqrt(s.x() * s.x() + s.y() * s.y());
   const double across = (rho - 1) * width;
-  const double shell = std::max(across, std::abs(e.z() + 0.12) - 0.34);
-  const double rim = std::sqrt(std::pow(across + 0.22, 2) + std::pow(e.z() - 0.22, 2)) - 0.4;
+  const double shell = std::max(across, std::abs(e.z() + 0.12) - 0.42);
+  const double rim = std::sqrt(std::pow(across + 0.22, 2) + std::pow(e.z() - 0.22, 2)) - 0.46;
   const double inner = std::sqrt(std::pow((rho - 0.56) * width, 2) + std::pow(e.z() - 0.18, 2)) - 0.27;
-  d = unite(d, shell, 0.6);
-  d = unite(d, ellipsoid(e, {-0.3, 0.0, -0.95}, {1.45, 2.4, 1.1}), 0.9);  // root
-  d = unite(d, rim, 0.3);
-  if (e.x() > -0.5) d = unite(d, inner, 0.35);
-  d = carve(d, ellipsoid(e, {-0.1, -0.35, 0.55}, {0.75, 1.1, 0.75}), 0.4);     // concha
+  d = unite(d, shell, 0.9);
+  d = unite(d, ellipsoid(e, {-0.2, 0.0, -0.95}, {1.6, 2.5, 1.2}), 1.0);  // root
+  d = unite(d, rim, 0.5);
+  if (e.x() > -0.5) d = unite(d, inner, 0.5);
+  d = carve(d, ellipsoid(e, {-0.1, -0.35, 0.55}, {0.8, 1.2, 0.8}), 0.6);       // concha
   d = unite(d, ellipsoid(e, {-1.0, -0.55, 0.25}, {0.42, 0.6, 0.38}), 0.4);     // tragus
   return unite(d, ellipsoid(e, {-0.45, -2.75, 0.0}, {0.75, 0.7, 0.42}), 0.5);  // lobe
 }
@@ -116,7 +116,7 @@ double headField(const Vec3& point) {
   double d = nose(eyes(skull(p), p), p);
   d = neck(mouth(d, p), p);
   if (ball(p, {7.6, 10.5, -1.9}, 6.0) < 0) d = ear(d, p);
-  return carve(d, p.y() - kHeadBase.y(), 0.6);
+  return carve(d, p.y() - kHeadBase.y(), 1.2);
 }
 
 }  // namespace coif

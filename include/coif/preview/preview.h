@@ -27,9 +27,9 @@ struct Light {
 
 /// Key, fill and rim, and the light of the surroundings from above and below.
 struct Lights {
-  Light key{Vec3(-0.55, 0.65, 0.62), Vec3f(2.9f, 2.75f, 2.5f)};
-  Light fill{Vec3(0.85, 0.15, 0.55), Vec3f(0.55f, 0.62f, 0.75f)};
-  Light rim{Vec3(0.55, 0.55, -0.8), Vec3f(2.6f, 2.7f, 2.9f)};
+  Light key{Vec3(-0.55, 0.65, 0.62), Vec3f(3.3f, 3.1f, 2.8f)};
+  Light fill{Vec3(0.85, 0.15, 0.55), Vec3f(0.50f, 0.54f, 0.62f)};
+  Light rim{Vec3(0.55, 0.55, -0.8), Vec3f(2.3f, 2.35f, 2.5f)};
   Vec3f skyColor = Vec3f(0.55f, 0.58f, 0.64f);
   Vec3f groundColor = Vec3f(0.20f, 0.18f, 0.17f);
   bool followCamera =
@@ -46,8 +46,8 @@ struct PreviewScene {
 };
 
 struct PreviewOptions {
-  int width = 1024, height = 1024;                 ///< pixels, 1 … 8192
-  int subframes = 4;                               ///< 1 … 64, four samples a pixel each
+  int width = 1024, height = 1024;                  ///< pixels, 1 … 8192
+  int subframes = 4;                                ///< 1 … 64, four samples a pixel each
   Vec3f hairColor = Vec3f(0.085f, 0.036f, 0.016f);  ///< linear RGB where the strands have no colours
   Vec3f headColor = Vec3f(0.50f, 0.40f, 0.34f);
   Vec3f backgroundTop = Vec3f(0.135f, 0.145f, 0.165f), backgroundBottom = Vec3f(0.03f, 0.032f, 0.037f);
