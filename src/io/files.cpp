@@ -143,8 +143,9 @@ Result<T> load(const fs::path& path, Read read) {
     Result<T> result = read(bytes, path);
     if (!result.ok()) return inFile(result.error(), path.string());
     const Status valid = validate(*result);
-    if (!valid.ok()) return inFile(valid.error(), path.string());
-    return result;
+    if (valid.ok()) return result;
+    // The readers answer for the structure: what is left to find are values that are not finite.
+    return makeError(ErrorCode::Degenerate, valid.error().message, valid.error().place, path.string());
   } catch (const std::bad_alloc&) {
     return makeError(ErrorCode::TooLarge, "there is not enough memory to read this file", {}, path.string());
   }

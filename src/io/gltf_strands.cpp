@@ -206,6 +206,8 @@ Result<StrandSet> StrandReader::read() {
       !allFinite(set_.weights)) {
     return makeError(ErrorCode::Degenerate, "a colour, transparency, weight or UV is not finite");
   }
+  const Status valid = validate(set_, false);
+  if (!valid.ok()) return makeError(ErrorCode::Malformed, valid.error().message, valid.error().place);
   return std::move(set_);
 }
 

@@ -51,8 +51,10 @@ class ObjReader {
   const std::filesystem::path& path_;
   MemoryBudget budget_;
   TextCursor cursor_{text_, TextCursor::Style::Continuations};
+  ObjCounts counts_;
   PolygonMesh mesh_;
   FaceNames names_;
+  bool namesUvs_ = false;
   std::vector<Vec2> uvs_;
   std::vector<std::uint32_t> cornerUvs_;  // into uvs_, kNone without
   // The greatest index met, to be checked at the end: a face may come before its vertices.
@@ -121,7 +123,8 @@ Status ObjReader::readCorner(std::string_view word) {
   if (slash != std::string_view::npos) {
     const std::string_view rest = word.substr(slash + 1);
     const std::string_view uvWord = rest.substr(0, rest.find('/'));
-    if (!uvWord.empty()) COIF_TRY(resolve(uvWord, uvs_.size(), "texture coordinate", uv));
+    namesUvs_ = namesUvs_ || !uvWord.empty();
+    if (!uvWord.empty() && counts_.uvs > 0) COIF_TRY(resolve(uvWord, uvs_.size(), "texture coordinate", uv));
   }
   if (vertex >= greatestVertex_.index) greatestVertex_ = {vertex, cursor_.wordOffset()};
   if (uv != kNone && uv >= greatestUv_.index) greatestUv_ = {uv, cursor_.wordOffset()};
@@ -195,18 +198,21 @@ void ObjReader::finishUvs() {
 }
 
 Result<PolygonMesh> ObjReader::read() {
-  const ObjCounts counts = countElements(text_);
-  COIF_TRY(budget_.reserve(mesh_.positions, counts.vertices));
-  COIF_TRY(budget_.reserve(uvs_, counts.uvs));
-  COIF_TRY(budget_.reserve(mesh_.faceOffsets, counts.faces + 1));
-  COIF_TRY(budget_.reserve(mesh_.corners, counts.corners));
-  COIF_TRY(budget_.reserve(cornerUvs_, counts.corners));
-  if (counts.uvs > 0) COIF_TRY(budget_.take(counts.corners, sizeof(Vec2)));
-  COIF_TRY(budget_.take(counts.faces, sizeof(std::uint32_t)));  // faceGroups
+  counts_ = countElements(text_);
+  COIF_TRY(budget_.reserve(mesh_.positions, counts_.vertices));
+  COIF_TRY(budget_.reserve(uvs_, counts_.uvs));
+  COIF_TRY(budget_.reserve(mesh_.faceOffsets, counts_.faces + 1));
+  COIF_TRY(budget_.reserve(mesh_.corners, counts_.corners));
+  COIF_TRY(budget_.reserve(cornerUvs_, counts_.corners));
+  if (counts_.uvs > 0) COIF_TRY(budget_.take(counts_.corners, sizeof(Vec2)));
+  COIF_TRY(budget_.take(counts_.faces, sizeof(std::uint32_t)));  // faceGroups
   for (; !cursor_.atEnd(); cursor_.nextLine()) COIF_TRY(readLine(cursor_.wordOnLine()));
   COIF_TRY(checkIndices());
   finishUvs();
   names_.finish(mesh_, {"materials", "groups", "objects"});
+  if (namesUvs_ && counts_.uvs == 0) {
+    mesh_.notes.push_back("The faces name texture coordinates, but the file has none; there are no UVs.");
+  }
   noteCount(mesh_, smallFaces_, "faces of fewer than three corners are left out.");
   noteCount(mesh_, otherElements_, "points, lines, curves and surfaces are left out.");
   noteCount(mesh_, colors_, "vertex colours are left out.");
@@ -243,8 +249,8 @@ std::string oneLine(std::string name) {
 std::string faceLine(const PolygonMesh& mesh, std::size_t face) {
   std::string line = "f";
   for (std::size_t c = mesh.faceOffsets[face]; c < mesh.faceOffsets[face + 1]; ++c) {
-    line += ' ' + std::to_string(mesh.corners[c] + std::uint64_t{1});
-    if (!mesh.cornerUvs.empty()) line += '/' + std::to_string(c + 1);
+    line.append(1, ' ').append(std::to_string(mesh.corners[c] + std::uint64_t{1}));
+    if (!mesh.cornerUvs.empty()) line.append(1, '/').append(std::to_string(c + 1));
   }
   return line + '\n';
 }

@@ -43,6 +43,13 @@ TEST(Obj, NegativeIndicesCountBackFromTheFace) {
   EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(Obj, UvsThatTheFileNamesButLacksAreLeftOut) {
+  const PolygonMesh mesh = obj(std::string(kSquare) + "f 1/1 2/2 3/3\nf -4/-4 -3/-3 -2/-2\n");
+  EXPECT_TRUE(mesh.cornerUvs.empty());
+  EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 0, 1, 2}));
+  EXPECT_TRUE(hasNote(mesh.notes, "the file has none"));
+}
+
 TEST(Obj, LineEndsContinuationsBlanksAndComments) {
   const PolygonMesh plain = obj(std::string(kSquare) + "f 1 2 3 4\n");
   for (const std::string text :
@@ -114,7 +121,7 @@ TEST(Obj, FaultsNameTheirLine) {
                         Case{square + "f 0 1 2\n", ErrorCode::Malformed, "line 5"},
                         Case{square + "f -5 1 2\n", ErrorCode::Malformed, "line 5"},
                         Case{square + "f 1 2 3\nf 1 2 5\n", ErrorCode::Malformed, "line 6"},
-                        Case{square + "f 1/1 2/1 3/1\n", ErrorCode::Malformed, "line 5"},
+                        Case{square + "vt 0 0\nf 1/1 2/1 3/2\n", ErrorCode::Malformed, "line 6"},
                         Case{square + "f 1 2 99999999999999999999\n", ErrorCode::Malformed, "line 5"},
                         Case{square + "f 1 2 4294967299\n", ErrorCode::Malformed, "line 5"},
                         Case{square + "f 1 2 3x\n", ErrorCode::Malformed, "line 5"},
