@@ -80,8 +80,8 @@ class Preview {
   ~Preview();
 
   /// Same scene, same options, same machine: same bytes. Errors: InvalidArgument (sizes, camera), Degenerate
-  /// (a head that fails validate), TooLarge (the driver's limit), Cancelled. Cost on two cores without a GPU:
-  /// a few seconds for 1024² with 100 000 strands.
+  /// (a head that fails validate), TooLarge (the driver's limit), Cancelled. Cost without a GPU: some 10 s of
+  /// processor time for 1024² with 100 000 strands, shared by the cores.
   Result<Picture> render(const PreviewScene& scene, const PreviewOptions& options = {},
                          const Context& context = {});
 
