@@ -137,6 +137,39 @@ Result<EdgeRef> mirrored(const HairMesh& mesh, const Mirror& mirror, EdgeRef edg
   return EdgeRef{face.bundle, face.layer, (mirror.cornerPartner[j] + 2 * n - edge.side - 1) % n};
 }
 
+Result<std::optional<FaceRef>> partnerAfter(const HairMesh& before, const HairMesh& after,
+                                            const Mirror& mirror, FaceRef ref) {
+  COIF_ASSIGN(const FaceRef partner, mirrored(before, mirror, ref));
+  const std::uint32_t was = before.indexOf(partner.bundle), is = after.indexOf(partner.bundle);
+  const bool taken =
+      partner == ref || is == kNone || before.bundles()[was].height() != after.bundles()[is].height();
+  return taken ? std::nullopt : std::optional(partner);
+}
+
+Result<std::optional<EdgeRef>> partnerAfter(const HairMesh& before, const HairMesh& after,
+                                            const Mirror& mirror, EdgeRef ref) {
+  COIF_ASSIGN(EdgeRef partner, mirrored(before, mirror, ref));
+  const auto ends = [](const HairMesh& mesh, EdgeRef edge) {
+    const Bundle& bundle = mesh.bundles()[mesh.indexOf(edge.bundle)];
+    const auto face = bundle.face(0);
+    return std::pair(mesh.vertices()[face[edge.side]].id,
+                     mesh.vertices()[face[(edge.side + 1) % bundle.corners]].id);
+  };
+  const auto mine = ends(before, ref), theirs = ends(before, partner);
+  if (std::minmax(mine.first, mine.second) == std::minmax(theirs.first, theirs.second))
+    return std::optional<EdgeRef>();
+  // The operation may have put corners into the partner's face: find the side again by the ids of its root
+  // ends.
+  const std::uint32_t j = after.indexOf(partner.bundle);
+  if (j != kNone && partner.layer <= after.bundles()[j].height()) {
+    for (partner.side = 0; partner.side < after.bundles()[j].corners; ++partner.side) {
+      if (ends(after, partner) == theirs) return std::optional(partner);
+    }
+  }
+  return makeError(ErrorCode::NotFound, "the mirror image is gone once the operation is done on one side",
+                   placeOf(ref));
+}
+
 Result<std::vector<BundleId>> withMirrored(const HairMesh& mesh, const Mirror& mirror,
                                            std::span<const BundleId> ids) {
   std::vector<BundleId> result;

@@ -5,6 +5,7 @@
 // then the mesh is unchanged. Cost: linear in the mesh unless stated.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -81,15 +82,25 @@ Status moveSymmetrically(HairMesh& mesh, const Mirror& mirror, std::span<const V
 /// partner, left alone.
 Result<std::size_t> symmetrise(HairMesh& mesh, const Mirror& mirror);
 
+/// Where the partner of `ref` is once the operation on `ref` has turned `before` into `after`; empty when
+/// that operation took it along: the same face or edge, or a face whose bundle changed height with the
+/// other's layer.
+Result<std::optional<FaceRef>> partnerAfter(const HairMesh& before, const HairMesh& after,
+                                            const Mirror& mirror, FaceRef ref);
+Result<std::optional<EdgeRef>> partnerAfter(const HairMesh& before, const HairMesh& after,
+                                            const Mirror& mirror, EdgeRef ref);
+
 /// Applies a topological operation to an edge or face and to its partner, or to neither: operation(mesh, ref)
-/// returns a Result. A self-mirrored one is done once.
+/// returns a Result. What the first takes along (an edge on the plane, a layer of a connected mesh) is done
+/// once.
 template <class Ref, class Operation>
 Status applySymmetrically(HairMesh& mesh, const Mirror& mirror, Ref ref, Operation&& operation) {
-  COIF_ASSIGN(const Ref partner, mirrored(mesh, mirror, ref));
   HairMesh copy = mesh;
+  if (const auto partner = mirrored(mesh, mirror, ref); !partner.ok()) return partner.error();
   if (const auto first = operation(copy, ref); !first.ok()) return first.error();
-  if (partner != ref) {
-    if (const auto second = operation(copy, partner); !second.ok()) return second.error();
+  COIF_ASSIGN(const std::optional<Ref> partner, partnerAfter(mesh, copy, mirror, ref));
+  if (partner) {
+    if (const auto second = operation(copy, *partner); !second.ok()) return second.error();
   }
   mesh = std::move(copy);
   return {};
