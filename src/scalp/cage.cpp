@@ -274,6 +274,11 @@ Result<Cage> buildCage(const PolygonMesh& mesh, const Surface& surface, const Re
   }
   COIF_ASSIGN(Cage built, options.exact ? exactCage(surface, region, std::move(cage))
                                         : gridCage(surface, region, options, context, std::move(cage)));
+  // Region and cut may have seen the same seams.
+  std::vector<std::string> notes;
+  for (std::string& n : built.notes)
+    if (std::find(notes.begin(), notes.end(), n) == notes.end()) notes.push_back(std::move(n));
+  built.notes = std::move(notes);
   measure(surface, built);
   return built;
 }
