@@ -246,6 +246,41 @@ TEST(Weld, VerticesOfFacesThatOnlyTouchAreADeclaredBowTie) {
   expectSound(mesh);
 }
 
+/// Bundles 0, 1 and 3 around the middle of four on layer 1; 0 and 3 go on to layer 2, welded there above the
+/// middle.
+HairMesh weldedAbove() {
+  HairMesh mesh = block(2, 2, 1);
+  EXPECT_TRUE(deleteFaces(mesh, Ids{2_b}).ok());
+  EXPECT_TRUE(extrudeFaces(mesh, Ids{0_b, 3_b}, {.distance = 1}).ok());
+  const VertexId a = mesh.vertices()[corner(mesh, 0, 2, 2)].id, b = mesh.vertices()[corner(mesh, 3, 2, 0)].id;
+  EXPECT_TRUE(weldVertices(mesh, a, b).ok());
+  EXPECT_FALSE(mesh.vertices()[corner(mesh, 0, 1, 2)].welded);  // one fan there, through bundle 1
+  return mesh;
+}
+
+TEST(Weld, HoldsTheVerticesBelowWhenAFaceIsDeleted) {
+  HairMesh mesh = weldedAbove();
+  ASSERT_TRUE(deleteFaces(mesh, Ids{1_b}).ok());
+  EXPECT_EQ(corner(mesh, 0, 1, 2), corner(mesh, 3, 1, 0));
+  EXPECT_TRUE(mesh.vertices()[corner(mesh, 0, 1, 2)].welded);
+  EXPECT_EQ(corner(mesh, 0, 2, 2), corner(mesh, 3, 2, 0));
+  expectSound(mesh);
+  // But the root layer has no bow-ties, and so nothing above it has one between the two.
+  ASSERT_TRUE(deleteFaces(mesh, Ids{1_b, 2_b}).ok());
+  for (const std::uint32_t k : {0u, 1u, 2u}) {
+    EXPECT_NE(mesh.bundles()[0].face(k)[2], mesh.bundles()[1].face(k)[0]) << k;
+  }
+  expectSound(mesh);
+}
+
+TEST(Weld, YieldsToASeparationBelow) {
+  HairMesh mesh = weldedAbove();
+  ASSERT_TRUE(separateEdge(mesh, {0_b, 1, 1}).ok());
+  EXPECT_NE(corner(mesh, 0, 1, 2), corner(mesh, 3, 1, 0));
+  EXPECT_NE(corner(mesh, 0, 2, 2), corner(mesh, 3, 2, 0));
+  expectSound(mesh);
+}
+
 TEST(Weld, VerticesJoinTheEdgeOnceBothEndsMeet) {
   HairMesh mesh = block(2, 1, 1);
   ASSERT_TRUE(separateEdge(mesh, {0_b, 1, 1}).ok());
@@ -423,6 +458,21 @@ TEST(Subdivide, KeepsSplitsAndSlits) {
     onSlit += (vertex.position - Vec3(1.5, 1, vertex.position.z())).norm() < 1e-12;
   }
   EXPECT_EQ(onSlit, 1u + 2 + 2);
+}
+
+TEST(Subdivide, ABowTieStaysWhereItIs) {
+  HairMesh mesh = block(2, 2, 1);
+  ASSERT_TRUE(separateEdge(mesh, {0_b, 1, 2}).ok());  // between bundles 0 and 2, then 1 and 3
+  ASSERT_TRUE(separateEdge(mesh, {1_b, 1, 2}).ok());
+  const VertexId a = mesh.vertices()[corner(mesh, 0, 1, 2)].id, b = mesh.vertices()[corner(mesh, 2, 1, 1)].id;
+  ASSERT_TRUE(weldVertices(mesh, a, b).ok());
+  const std::uint32_t middle = corner(mesh, 0, 1, 2);
+  ASSERT_TRUE(mesh.vertices()[middle].welded);
+  mesh.setPosition(middle, {1, 1, 5});
+  const VertexId id = mesh.vertices()[middle].id;
+  ASSERT_TRUE(subdivide(mesh, {}).ok());
+  expectSound(mesh);
+  EXPECT_EQ(mesh.position(mesh.indexOf(id)), Vec3(1, 1, 5));  // each fan alone would bring it to 4
 }
 
 TEST(Subdivide, LoopHasTheClassicalWeights) {
