@@ -1,0 +1,4 @@
+// coif bench: error against time for the choices a user has.
+#include "../../bench/bench.h"
+
+#include "command.h"
