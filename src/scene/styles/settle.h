@@ -1,0 +1,30 @@
+// From guide curves to a hair mesh: outer vertices follow them, inner ones are placed and pinned only where needed.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "coif/scene/hairstyle.h"
+#include "scene/styles/comb.h"
+
+namespace coif::styles {
+
+/// Where every vertex ought to be, in scene units: targets[v] for vertex index v.
+struct SettleOptions {
+  double tolerance = 0.02;  ///< an inner vertex may end this far from its target, in head heights
+  double clearance = 0.004; ///< and must stay this far outside the head
+};
+
+/// Sets all vertices above the root to their targets, places the inner ones, and pins the worst of those that came
+/// out too far from their target or too close to the head, until none is left.
+Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets, const Surface& head,
+                               const HeadSpace& space, const SettleOptions& options, const Context& context);
+
+/// The root vertex (index) below each vertex.
+std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh);
+
+/// The side of the parting, −1 or +1, that each vertex's bundles lie on; `left` says it of a bundle by index.
+std::vector<int> sidesOf(const HairMesh& mesh, const std::function<bool(std::uint32_t bundle)>& left);
+
+}  // namespace coif::styles
