@@ -15,7 +15,7 @@ std::uint64_t meshHash(const HairMesh& mesh) {
   std::uint64_t hash = 0;
   const auto add = [&](std::uint64_t value) { hash = hashCombine(hash, value); };
   for (const HairVertex& vertex : mesh.vertices()) {
-    add(std::uint64_t(vertex.id) << 1 | std::uint64_t(vertex.pinned));
+    add(std::uint64_t(vertex.id) << 2 | std::uint64_t(vertex.pinned) << 1 | std::uint64_t(vertex.welded));
     for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::uint64_t>(vertex.position[axis]));
   }
   for (const Bundle& bundle : mesh.bundles()) {

@@ -20,10 +20,11 @@ constexpr int kMaxDepth = 32;
 constexpr const char* kKnotNames[] = {"uniform", "centripetal", "chordal"};
 
 ordered_json meshJson(const HairMesh& mesh) {
-  std::vector<std::uint32_t> ids, pinned, bundleIds, corners, heights, groups, vertices, splits;
+  std::vector<std::uint32_t> ids, pinned, welded, bundleIds, corners, heights, groups, vertices, splits;
   std::vector<double> positions;
   for (const HairVertex& vertex : mesh.vertices()) {
     if (vertex.pinned) pinned.push_back(std::uint32_t(ids.size()));
+    if (vertex.welded) welded.push_back(std::uint32_t(ids.size()));
     ids.push_back(std::uint32_t(vertex.id));
     for (int axis = 0; axis < 3; ++axis) positions.push_back(vertex.position[axis]);
   }
@@ -38,7 +39,8 @@ ordered_json meshJson(const HairMesh& mesh) {
   ordered_json out;
   out["vertices"] = {{"ids", scene::encodeIntegers(ids)},
                      {"positions", scene::encodeDoubles(positions)},
-                     {"pinned", scene::encodeIntegers(pinned)}};
+                     {"pinned", scene::encodeIntegers(pinned)},
+                     {"welded", scene::encodeIntegers(welded)}};
   out["bundles"] = {{"ids", scene::encodeIntegers(bundleIds)},
                     {"corners", scene::encodeIntegers(corners)},
                     {"heights", scene::encodeIntegers(heights)},
@@ -57,13 +59,16 @@ Result<std::vector<HairVertex>> readVertices(JsonReader reader) {
   const auto ids = reader.integers("ids");
   const auto positions = reader.doubles("positions");
   const auto pinned = reader.integers("pinned");
+  const auto welded = reader.integers("welded");
   COIF_TRY(reader.status());
   if (positions.size() != 3 * ids.size()) {
     reader.fail("positions", numberText(3 * ids.size()) + " values are wanted for " + numberText(ids.size()) +
                                  " vertices, and " + numberText(positions.size()) + " are here");
   }
-  for (std::uint32_t index : pinned) {
-    if (index >= ids.size()) reader.fail("pinned", "vertex " + numberText(index) + " does not exist");
+  for (const auto& [name, list] : {std::pair("pinned", &pinned), std::pair("welded", &welded)}) {
+    for (std::uint32_t index : *list) {
+      if (index >= ids.size()) reader.fail(name, "vertex " + numberText(index) + " does not exist");
+    }
   }
   COIF_TRY(reader.status());
   std::vector<HairVertex> vertices(ids.size());
@@ -72,6 +77,7 @@ Result<std::vector<HairVertex>> readVertices(JsonReader reader) {
     vertices[i].position = Vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
   }
   for (std::uint32_t index : pinned) vertices[index].pinned = true;
+  for (std::uint32_t index : welded) vertices[index].welded = true;
   return vertices;
 }
 

@@ -1,0 +1,24 @@
+// Hair that falls: it leaves the parting or the whorl, follows the head and hangs to a cut line.
+#pragma once
+
+#include "scene/styles/style.h"
+
+namespace coif::styles {
+
+struct FlowStyle {
+  std::uint32_t layers = 8;
+  bool parted = true;
+  double whorl = -0.12;     ///< w of the parting's end and of the point that hair behind it fans out from
+  double fan = 0.9;         ///< pull away from the parting at the root, against gravity 1
+  double back = 0.6;        ///< pull backwards at the front hairline
+  double length = 1.2;      ///< at most, head heights
+  double thickness = 0.07;  ///< of the whole cover, head heights: the highest roots lie this far out
+  double close = 0.012;     ///< the lowest roots lie this far out
+  std::function<double(const Vec3&)> cut;  ///< height v at which hair at this point ends; empty: by length alone
+  double tuck = 0;          ///< pull towards the neck over the last `tuckSpan` above the cut
+  double tuckSpan = 0.15;
+};
+
+Result<Hairstyle> flow(const StyleInput& input, const FlowStyle& style);
+
+}  // namespace coif::styles
