@@ -11,7 +11,7 @@ namespace {
 Vec3 awayFromParting(const Vec3& point, double whorl, int side) {
   const Vec3 foot(0, 0, std::max(point.z(), whorl));
   Vec3 away(point.x() - foot.x(), 0, point.z() - foot.z());
-  if (point.z() >= whorl) away = Vec3(side, 0, 0);
+  if (point.z() >= whorl && side != 0) away = Vec3(side, 0, 0);
   return away.norm() > 1e-6 ? Vec3(away.normalized()) : Vec3(0, 0, -1);
 }
 

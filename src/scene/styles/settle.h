@@ -24,7 +24,8 @@ Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets,
 /// The root vertex (index) below each vertex.
 std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh);
 
-/// The side of the parting, −1 or +1, that each vertex's bundles lie on; `left` says it of a bundle by index.
+/// The side of the parting that each vertex's bundles lie on: −1, +1, or 0 where bundles of both sides meet in it.
+/// `left` says it of a bundle by index.
 std::vector<int> sidesOf(const HairMesh& mesh, const std::function<bool(std::uint32_t bundle)>& left);
 
 }  // namespace coif::styles

@@ -57,7 +57,8 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
       const auto& [root, side, top] = work[i]->first;
       Root at = roots[root];
       at.side = side;
-      work[i]->second = resample(guide(at), top + 1);
+      Guide made = guide(at);
+      work[i]->second = made.size() == top + 1 ? std::move(made) : resample(made, top + 1);
     }
   });
   std::vector<Vec3> targets(ancestors.size());

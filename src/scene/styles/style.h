@@ -21,10 +21,10 @@ struct Root {
   Vec3 point = Vec3::Zero();   ///< head space
   Vec3 normal = Vec3::Zero();  ///< outward, head space
   double rank = 0;             ///< 0 at the lowest root, 1 at the highest: how far out its hair lies
-  int side = 1;                ///< of the parting, −1 or +1
+  int side = 1;                ///< of the parting, −1 or +1; 0 where both sides meet
 };
 
-/// The guide of a root; points are resampled to one a layer.
+/// The guide of a root: one point a layer, or else any number, then evenly resampled.
 using GuideMaker = std::function<Guide(const Root&)>;
 
 /// Every root with its normal and rank; `side` is left at 1. Indexed as the mesh's layer-0 vertices are.
