@@ -1,4 +1,6 @@
 // coif new: from a head model to a scene with a hairstyle.
+#include <cmath>
+
 #include "coif/base/random.h"
 #include "coif/io/mesh_io.h"
 #include "coif/io/safe_file.h"
@@ -46,15 +48,21 @@ Result<std::uint64_t> fileHash(const std::string& path) {
   return hash;
 }
 
-Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, Region& region) {
+Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, const Region& region, const Context& context) {
   CageOptions options;
-  options.count = suggestedCageCount(arguments.style);
+  options.count = int(suggestedCageCount(arguments.style));
   if (arguments.cage == "exact") {
     options.exact = true;
   } else if (!arguments.cage.empty()) {
-    options.count = std::uint32_t(std::stoul(arguments.cage));
+    options.count = std::stoi(arguments.cage);
   }
-  return buildCage(head, region, options);
+  return buildCage(head.mesh(), head, region, options, context);
+}
+
+/// Where the face looks, as an azimuth of the camera: 0 is +z of a y-up model, −y of a z-up one.
+double frontAzimuthDeg(const HeadFrame& frame, UpAxis up) {
+  const double depth = up == UpAxis::Y ? frame.forward.z() : -frame.forward.y();
+  return std::atan2(frame.forward.x(), depth) * 180 / M_PI;
 }
 
 Status makeScene(const NewArguments& arguments, Session& session) {
@@ -71,10 +79,11 @@ Status makeScene(const NewArguments& arguments, Session& session) {
   }
   const Surface head(mesh);
   context.report("finding the scalp", 0.2);
-  COIF_ASSIGN(Region region, regionFromText(arguments.region, head, cap));
+  COIF_ASSIGN(const Region region, regionFromText(arguments.region, head, cap));
   for (const std::string& note : region.notes) session.say("  " + note);
   context.report("laying the cage", 0.4);
-  COIF_ASSIGN(const Cage cage, cageOf(arguments, head, region));
+  COIF_ASSIGN(const Cage cage, cageOf(arguments, head, region, context));
+  for (const std::string& note : cage.notes) session.say("  " + note);
   context.report("modelling the hairstyle", 0.6);
   COIF_ASSIGN(Hairstyle hairstyle, modelHairstyle(arguments.style, cage, head, context));
 
@@ -86,6 +95,7 @@ Status makeScene(const NewArguments& arguments, Session& session) {
                         : mesh.metersPerUnit > 0 ? mesh.metersPerUnit
                                                  : kHeadMeters / cage.frame.height;
   scene.upAxis = mesh.upAxis;
+  scene.look.azimuthDeg += frontAzimuthDeg(cage.frame, mesh.upAxis);
   scene.hairMesh = std::move(hairstyle.mesh);
   scene.placedHash = meshHash(scene.hairMesh);
   COIF_TRY(saveScene(scene, arguments.output));

@@ -26,8 +26,8 @@ using Guide = std::vector<Vec3>;
 struct CombOptions {
   double length = 1;       ///< head heights
   double step = 0.015;     ///< head heights
-  double turn = 0.25;      ///< share of the wanted direction taken up each step: low is stiff
-  double rise = 0.35;      ///< how far the first direction leans from the comb towards the scalp normal
+  double turn = 0.35;      ///< share of the wanted direction taken up each step: low is stiff
+  double rise = 0.25;      ///< how far the first direction leans from the comb towards the scalp normal
   /// Wanted direction at a point after arc length s; need not be unit.
   std::function<Vec3(const Vec3& point, double s)> direction;
   /// Least distance to the head after arc length s.

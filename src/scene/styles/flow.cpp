@@ -29,7 +29,7 @@ CombOptions combing(const FlowStyle& style, const Root& root) {
   CombOptions out;
   out.length = style.length;
   out.direction = [=, side = root.side](const Vec3& point, double s) {
-    const double fade = std::exp(-s / 0.45);
+    const double fade = std::exp(-s / style.reach);
     Vec3 wanted = Vec3(0, -1, 0) + style.fan * fade * awayFromParting(point, style.whorl, side) +
                   style.back * front * fade * Vec3(0, 0, -1);
     if (style.tuck > 0 && style.cut) {

@@ -9,7 +9,7 @@
 namespace coif::styles {
 
 Result<HairMesh> rootLayer(const StyleInput& input) {
-  return HairMesh::fromRoot(input.cage.positions, input.cage.offsets, input.cage.corners);
+  return HairMesh::fromRoot(input.cage.positions, input.cage.faceOffsets, input.cage.corners);
 }
 
 std::vector<Root> rootsOf(const HairMesh& mesh, const StyleInput& input) {
