@@ -1,0 +1,141 @@
+"""The `coif` command as a person would use it: results, exit statuses and sentences."""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COIF = pathlib.Path(os.environ.get("COIF_BIN_DIR", ROOT / "build/release/bin")) / "coif"
+STYLES = ["bob", "long", "bun", "mohawk", "pixie"]
+COMMANDS = ["new", "build", "render", "info", "check", "convert", "bench", "example-head"]
+
+if not COIF.exists():
+    pytest.skip(f"{COIF} is not built", allow_module_level=True)
+
+
+def run(*arguments, status=0, **options):
+    done = subprocess.run([COIF, *map(str, arguments)], capture_output=True, text=True, timeout=600, **options)
+    assert done.returncode == status, (arguments, done.stdout, done.stderr)
+    return done
+
+
+def run_json(*arguments, **options):
+    return json.loads(run(*arguments, "--json", **options).stdout)
+
+
+@pytest.fixture(scope="session")
+def head(tmp_path_factory):
+    path = tmp_path_factory.mktemp("head") / "head.obj"
+    run("example-head", "-o", path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def scenes(head, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scenes")
+    for style in STYLES:
+        run("new", "--scalp", head, "--meters-per-unit", "0.01", "--style", style, "-o", folder / f"{style}.coif")
+    return folder
+
+
+def test_version_and_help():
+    assert run("--version").stdout.startswith("coif ")
+    for command in COMMANDS:
+        text = run(command, "--help").stdout
+        assert "Example:" in text and f"coif {command}" in text
+
+
+@pytest.mark.parametrize("arguments", [
+    [], ["no-such-command"], ["build"], ["new", "--style", "beehive", "--scalp", "x.obj", "-o", "x.coif"],
+    ["render", "x.coif", "-o", "x.png", "--size", "big"], ["build", "x.coif", "-o", "x.usdc", "--points", "1"],
+    ["build", "x.coif", "-o", "x.usdc", "--strands", "-5"], ["info", "x", "--no-such-flag"],
+    ["new", "--scalp", "x.obj", "--style", "bob", "-o", "x.coif", "--cage", "many"],
+    ["bench", "no-such-bench"]])
+def test_bad_usage_is_one_sentence_and_status_2(arguments):
+    done = run(*arguments, status=2)
+    assert done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1 and done.stderr.startswith("coif: ")
+
+
+def test_missing_files_are_named(tmp_path):
+    for arguments in (["build", "gone.coif", "-o", "x.usdc"], ["info", "gone.obj"], ["check", "gone.coif"],
+                      ["convert", "gone.hair", "x.usdc"], ["new", "--scalp", "gone.obj", "--style", "bob", "-o", "x.coif"]):
+        done = run(*arguments, status=1, cwd=tmp_path)
+        assert "gone." in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_every_style_checks_and_stays_small(scenes, style):
+    scene = scenes / f"{style}.coif"
+    assert run_json("check", scene)["faults"] == []
+    info = run_json("info", scene)
+    assert info["vertices"] <= 1500
+    assert scene.stat().st_size < 100_000
+
+
+def test_build_explains_and_reports(scenes, tmp_path):
+    report = tmp_path / "report.json"
+    done = run("build", scenes / "bob.coif", "-o", tmp_path / "a.usdc", "-o", tmp_path / "a.glb", "--strands", 500,
+               "--points", 8, "--explain", "--report", report)
+    assert "nothing moved" in done.stdout
+    stages = json.loads(report.read_text())["stages"]
+    assert [s["stage"] for s in stages if s["state"] == "ran"] == ["head", "check", "strands", "export", "export"]
+    assert any(s["stage"] == "place" and s["state"] == "skipped" for s in stages)
+    forced = run_json("build", scenes / "bob.coif", "-o", tmp_path / "b.hair", "--strands", 10, "--force", "place")
+    assert any(s["stage"] == "place" and s["state"] == "ran" for s in forced["stages"])
+
+
+def test_same_bytes_for_any_number_of_threads(scenes, tmp_path):
+    for threads in (1, 2, 5):
+        run("build", scenes / "pixie.coif", "-o", tmp_path / f"{threads}.hair", "--strands", 3000, "--threads", threads)
+    assert len({(tmp_path / f"{t}.hair").read_bytes() for t in (1, 2, 5)}) == 1
+
+
+def test_convert_round_trip(scenes, tmp_path):
+    run("build", scenes / "long.coif", "-o", tmp_path / "a.hair", "--strands", 200, "--points", 12)
+    run("convert", tmp_path / "a.hair", tmp_path / "b.usdc")
+    run("convert", tmp_path / "b.usdc", tmp_path / "c.glb")
+    for name in ("a.hair", "b.usdc", "c.glb"):
+        info = run_json("info", tmp_path / name)
+        assert (info["strands"], info["points"]) == (200, 2400)
+
+
+def test_failed_export_leaves_the_old_file(scenes, tmp_path):
+    target = tmp_path / "old.usdc"
+    target.write_text("precious")
+    run("build", scenes / "bob.coif", "-o", target, "--strands", 100000, status=1,
+        preexec_fn=lambda: __import__("resource").setrlimit(__import__("resource").RLIMIT_FSIZE, (1 << 16, 1 << 16)))
+    assert target.read_text() == "precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["old.usdc"]
+
+
+def test_spoilt_scene_is_refused(scenes, tmp_path):
+    text = (scenes / "bob.coif").read_text()
+    for name, spoilt in {"cut": text[: len(text) // 2], "empty": "", "text": "hair", "types": text.replace("f64:", "u8:"),
+                         "version": text.replace('"version": 1', '"version": 77')}.items():
+        path = tmp_path / f"{name}.coif"
+        path.write_text(spoilt)
+        done = run("build", path, "-o", tmp_path / "x.usdc", status=1)
+        assert path.name in done.stderr and not (tmp_path / "x.usdc").exists()
+
+
+def test_render_writes_a_picture(scenes, tmp_path):
+    done = subprocess.run([COIF, "render", scenes / "bob.coif", "-o", tmp_path / "bob.png", "--size", "96x64", "--strands",
+                           "2000"], capture_output=True, text=True, timeout=600)
+    if done.returncode == 2 and "without the preview" in done.stderr:
+        pytest.skip("built without preview")
+    if done.returncode == 1 and "EGL" in done.stderr:
+        pytest.skip(done.stderr.strip())
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "bob.png").read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+
+
+def test_bench_json_carries_bars():
+    bars = run_json("bench", "place", "--quick")["bars"]
+    assert bars
+    for bar in bars.values():
+        assert set(bar) >= {"value", "bar", "holds"}
