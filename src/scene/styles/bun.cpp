@@ -15,7 +15,7 @@ struct Knot {
   double turns = 0.8;                                // of the winding
 };
 
-Guide towardsTie(const StyleInput& input, const Knot& knot, const Root& root, const Vec3& port) {
+Guide towardsTie(const StyleInput& input, const Root& root, const Vec3& port) {
   CombOptions options;
   options.length = 2;
   options.rise = 0.1;
@@ -63,7 +63,7 @@ Result<Hairstyle> bun(const StyleInput& input) {
     const double far = std::min(1.0, offset.norm() / 0.9);
     const double radius = knot.ring * std::sqrt(std::max(0.02, far));
     const Vec3 port = knot.tie + radius * (std::cos(angle) * right + std::sin(angle) * up);
-    Guide scalpPart = resample(towardsTie(input, knot, root, port), kScalpLayers + 1);
+    Guide scalpPart = resample(towardsTie(input, root, port), kScalpLayers + 1);
     Guide knotPart{port};
     wind(knotPart, knot, angle, 1 - far);
     knotPart = resample(knotPart, kKnotLayers + 1);

@@ -53,7 +53,7 @@ Result<Hairstyle> flow(const StyleInput& input, const FlowStyle& style) {
   for (const Bundle& bundle : mesh.bundles()) all.push_back(bundle.id);
   COIF_TRY(extrudeLayers(mesh, all, style.layers));
   if (style.parted) {
-    COIF_ASSIGN(const std::size_t edges, separateParting(mesh, input, 0, style.whorl));
+    COIF_ASSIGN(const std::size_t edges, separateParting(mesh, input, style.whorl));
     if (edges == 0) {
       return makeError(ErrorCode::Degenerate, "the cage has no line of vertices along the middle to part the hair on");
     }

@@ -71,18 +71,20 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
   return targets;
 }
 
-Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double part, double back) {
-  constexpr double kOnTheLine = 1e-3;  // head heights: the parting follows a line of cage vertices
+Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double back) {
+  // The root layer's vertices are the cage's: all of them carry faces, so fromRoot keeps their order.
+  const auto onParting = [&](std::uint32_t v) {
+    if (input.space.fromScene(mesh.position(v)).z() < back) return false;
+    if (!input.cage.grid.empty()) return input.cage.grid[v][0] == input.cage.columns / 2;
+    return !input.cage.onPlane.empty() && input.cage.onPlane[v] != 0;
+  };
   std::size_t count = 0;
   const std::size_t bundles = mesh.bundles().size();
   for (std::size_t j = 0; j < bundles; ++j) {
     const Bundle bundle = mesh.bundles()[j];
     for (std::uint32_t side = 0; side < bundle.corners; ++side) {
-      const auto onLine = [&](std::uint32_t corner) {
-        const Vec3 p = input.space.fromScene(mesh.position(bundle.face(0)[corner % bundle.corners]));
-        return std::abs(p.x() - part) < kOnTheLine && p.z() >= back;
-      };
-      if (!onLine(side) || !onLine(side + 1)) continue;
+      const auto root = bundle.face(0);
+      if (!onParting(root[side]) || !onParting(root[(side + 1) % bundle.corners])) continue;
       // Each edge comes up from both its bundles; the second finds it separated already.
       if (separateEdge(mesh, {bundle.id, 1, side}).ok()) ++count;
     }

@@ -40,9 +40,9 @@ Status extrudeLayers(HairMesh& mesh, std::span<const BundleId> bundles, std::uin
 std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const std::vector<int>& sides,
                             const GuideMaker& guide);
 
-/// Separates, from layer 1 upwards, the root edges along the parting: both ends within `tolerance` of the polyline
-/// u = part, w >= back (head space). Returns how many.
-Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double part, double back);
+/// Separates, from layer 1 upwards, the root edges along the middle column of the cage from the front back to depth
+/// `back` (head space w). Returns how many.
+Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double back);
 
 // The styles.
 Result<Hairstyle> bob(const StyleInput& input);
