@@ -15,9 +15,8 @@ struct Entry {
 
 constexpr Entry kBenches[] = {
     {"place", benchPlace},
-#ifdef COIF_BENCH_COORDINATES
     {"coordinates", benchCoordinates},
-#endif
+    {"strands", benchStrands},
 };
 
 }  // namespace

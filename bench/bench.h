@@ -114,6 +114,7 @@ T require(Result<T> result) {
 // The benches, one file each. They may throw BenchFault.
 BenchReport benchPlace(const BenchOptions& options);        ///< bench_place.cpp
 BenchReport benchCoordinates(const BenchOptions& options);  ///< bench_coordinates.cpp
+BenchReport benchStrands(const BenchOptions& options);      ///< bench_strands.cpp
 
 }  // namespace coif
 
