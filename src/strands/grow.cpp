@@ -66,10 +66,9 @@ void fillPoints(const StrandSampler& sampler, const GrowOptions& options, Strand
                 const Context& context) {
   out.offsets.assign(sampler.offsets().begin(), sampler.offsets().end());
   out.points.resize(sampler.pointCount());
-  sampler.evaluate(out.points, context);
-  const double width = options.width > 0 ? options.width : kDefaultWidthMetres / options.metersPerUnit;
   out.widths.resize(sampler.pointCount());
-  sampler.widths(out.widths, float(width), float(width * options.tipWidth), context);
+  const double width = options.width > 0 ? options.width : kDefaultWidthMetres / options.metersPerUnit;
+  sampler.evaluate(out.points, out.widths, float(width), float(width * options.tipWidth), context);
 }
 
 void fillStrands(const HairMesh& mesh, RootSet& roots, StrandSet& out) {

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kLeastLength = 1e-9;  // of the mesh's box
 
+constexpr std::size_t kMostRoots = std::size_t{1} << 31;
+
 /// What a bundle offers to roots.
 struct Ground {
   double weight = 0;      ///< density · area; 0: carries none
@@ -41,8 +43,8 @@ bool hasLength(const HairMesh& mesh, const Bundle& bundle, double least) {
 }
 
 Status checkOptions(const HairMesh& mesh, const RootOptions& options) {
-  if (options.count > std::size_t(kNone) - 1) {
-    return makeError(ErrorCode::TooLarge, std::to_string(options.count) + " strands are more than 2^32 - 2");
+  if (options.count > kMostRoots) {
+    return makeError(ErrorCode::TooLarge, std::to_string(options.count) + " strands are more than 2^31");
   }
   if (!options.density.empty() && options.density.size() != mesh.bundles().size()) {
     return makeError(ErrorCode::InvalidArgument, "there are " + std::to_string(options.density.size()) +
@@ -144,8 +146,26 @@ class RootPlacer {
       }
     }
     COIF_CHECK(claims_.size() >= options_.count, "enough claims were made");
-    std::sort(claims_.begin(), claims_.end());
+    sortClaims(last);
     claims_.resize(options_.count);
+  }
+
+  /// Keys are spread evenly over [0, last], so buckets of a few claims each leave little to sort.
+  void sortClaims(double last) {
+    const std::size_t buckets = claims_.size() / 4 + 1;
+    const auto bucketOf = [&](const Claim& c) {
+      return std::min(std::size_t(c.key / last * double(buckets)), buckets - 1);
+    };
+    std::vector<std::uint32_t> ends(buckets + 1, 0);
+    for (const Claim& c : claims_) ++ends[bucketOf(c) + 1];
+    for (std::size_t i = 0; i < buckets; ++i) ends[i + 1] += ends[i];
+    std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
+    std::vector<Claim> sorted(claims_.size());
+    for (const Claim& c : claims_) sorted[next[bucketOf(c)]++] = c;
+    for (std::size_t i = 0; i < buckets; ++i) {
+      std::sort(sorted.begin() + ends[i], sorted.begin() + ends[i + 1]);
+    }
+    claims_ = std::move(sorted);
   }
 
   void group() {

@@ -87,6 +87,8 @@ class StrandSampler::Worker {
       const auto first = std::lower_bound(parameters_.begin(), parameters_.end(), 1.0) - parameters_.begin();
       fading_.resize(std::size_t(first));
       for (std::size_t p = 0; p < fading_.size(); ++p) fading_[p] = float(fading(parameters_[p]));
+      along_.resize(parameters_.size());
+      for (std::size_t p = 0; p < along_.size(); ++p) along_[p] = float(parameters_[p] / double(height_));
     }
     sampleColumns(b);
   }
@@ -107,18 +109,18 @@ class StrandSampler::Worker {
   }
 
   void writeWidths(std::size_t root, float rootWidth, float tipWidth, float* out) const {
-    const std::size_t size = s_.extentOf(root).size, kept = fading_.size() - (parameters_.size() - size);
-    for (std::size_t p = 0; p < size; ++p) {
-      const double t =
-          parameters_[p < kept ? p * (fading_.size() / kept) : p + fading_.size() - kept] / height_;
-      out[p] = float((1 - t) * rootWidth + t * tipWidth);
-    }
+    const std::size_t size = s_.extentOf(root).size, skipped = parameters_.size() - size;
+    const std::size_t kept = fading_.size() - skipped;
+    for (std::size_t p = 0; p < kept; ++p)
+      out[p] = mix(rootWidth, tipWidth, along_[p * (fading_.size() / kept)]);
+    for (std::size_t p = kept; p < size; ++p) out[p] = mix(rootWidth, tipWidth, along_[p + skipped]);
   }
 
   /// Greatest distance from the spline to the polyline `points` of a strand.
   double chordError(std::size_t root, std::span<const Vec3f> points) const;
 
  private:
+  static float mix(float a, float b, float t) { return (1 - t) * a + t * b; }
   std::size_t stride() const { return 3 * parameters_.size(); }
 
   void sampleColumns(const Bundle& b) {
@@ -151,6 +153,7 @@ class StrandSampler::Worker {
   SplineTable table_{std::vector<double>{1}, {}};
   std::vector<float> columns_;
   std::vector<float> fading_;  // of the points below parameter 1
+  std::vector<float> along_;   // parameter over height, of all points
 };
 
 double StrandSampler::Worker::chordError(std::size_t root, std::span<const Vec3f> points) const {
@@ -263,15 +266,16 @@ std::vector<std::uint32_t> StrandSampler::planBundle(std::size_t index) {
 }
 
 void StrandSampler::evaluate(std::span<Vec3f> points, const Context& context) const {
-  COIF_CHECK(points.size() == pointCount(), "room for every point");
-  forEachStrand(context,
-                [&](const Worker& worker, std::size_t r) { worker.write(r, points[offsets_[r]].data()); });
+  evaluate(points, {}, 0, 0, context);
 }
 
-void StrandSampler::widths(std::span<float> out, float root, float tip, const Context& context) const {
-  COIF_CHECK(out.size() == pointCount(), "room for every point");
+void StrandSampler::evaluate(std::span<Vec3f> points, std::span<float> widths, float rootWidth,
+                             float tipWidth, const Context& context) const {
+  COIF_CHECK(points.size() == pointCount() && (widths.empty() || widths.size() == pointCount()),
+             "room for every point");
   forEachStrand(context, [&](const Worker& worker, std::size_t r) {
-    worker.writeWidths(r, root, tip, &out[offsets_[r]]);
+    worker.write(r, points[offsets_[r]].data());
+    if (!widths.empty()) worker.writeWidths(r, rootWidth, tipWidth, &widths[offsets_[r]]);
   });
 }
 

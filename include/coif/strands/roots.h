@@ -50,7 +50,7 @@ struct RootSet {
 };
 
 struct RootOptions {
-  std::size_t count = 10000;  ///< exactly so many, <= 2^32 − 2, while any bundle can carry one
+  std::size_t count = 10000;  ///< exactly so many, <= 2^31, while any bundle can carry one
   std::uint64_t seed = 1;
   std::span<const double> density = {};  ///< weight a bundle (by index), >= 0; empty: all 1
 };

@@ -44,8 +44,9 @@ class StrandSampler {
   /// Writes all points: `points` holds pointCount(). Same bytes for any number of threads; no memory per
   /// strand.
   void evaluate(std::span<Vec3f> points, const Context& context = {}) const;
-  /// Writes diameters that go linearly in the parameter from `root` to `tip`.
-  void widths(std::span<float> out, float root, float tip, const Context& context = {}) const;
+  /// The same, and diameters that go linearly in the parameter from root to tip; `widths` as long, or empty.
+  void evaluate(std::span<Vec3f> points, std::span<float> widths, float rootWidth, float tipWidth,
+                const Context& context = {}) const;
 
   /// Greatest distance, over `samples` strands spread over the set, between the polyline in `points` and the
   /// spline itself sampled 16 times between neighbouring points, in double.
