@@ -323,6 +323,7 @@ void bindHairMesh(nb::module_& m) {
   bindMaking(c);
   bindReading(c);
   bindOperations(c);
+  bindEdit(m, c);
   bindHistory(c);
 }
 

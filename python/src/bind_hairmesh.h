@@ -30,6 +30,11 @@ class HairMeshModel {
   auto apply(const char* what, Operation&& operation) {
     return take(history_.apply(mesh_, what, std::forward<Operation>(operation)));
   }
+  /// The same for an operation that returns no value.
+  template <class Operation>
+  void applyStatus(const char* what, Operation&& operation) {
+    take(history_.apply(mesh_, what, std::forward<Operation>(operation)));
+  }
   void undo() { take(history_.undo(mesh_)); }
   void redo() { take(history_.redo(mesh_)); }
 
@@ -48,5 +53,6 @@ class HairMeshModel {
 
 void bindCreated(nb::module_& m);
 void bindOperations(nb::class_<HairMeshModel>& c);
+void bindEdit(nb::module_& m, nb::class_<HairMeshModel>& c);
 
 }  // namespace coif::python

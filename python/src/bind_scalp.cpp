@@ -155,6 +155,25 @@ Array1<double> mapPoints(const ArrayLike& points, Query&& query) {
   return own1(std::move(out));
 }
 
+std::tuple<Array3<double>, Array3<double>, Array1<double>> project(const Surface& s,
+                                                                   const ArrayLike& points) {
+  const std::vector<Vec3> p = toPoints(points, "points");
+  std::vector<Vec3> feet(p.size()), normals(p.size());
+  std::vector<double> distances(p.size());
+  {
+    const nb::gil_scoped_release unlocked;
+    parallelFor(Context{}, p.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SurfacePoint foot = s.nearest(p[i]);
+        feet[i] = foot.position;
+        normals[i] = foot.normal;
+        distances[i] = s.windingNumber(p[i]) > 0.5 ? -foot.distance : foot.distance;
+      }
+    });
+  }
+  return {own3(std::move(feet)), own3(std::move(normals)), own1(std::move(distances))};
+}
+
 void bindSurface(nb::module_& m) {
   nb::class_<SurfacePoint>(m, "SurfacePoint",
                            "A point on a surface: where, on which face, and how far from the query.")
@@ -186,6 +205,10 @@ void bindSurface(nb::module_& m) {
           "nearest",
           [](const Surface& s, const ArrayLike& point) { return s.nearest(toVec3(point, "point")); },
           "point"_a, "The surface point nearest to `point` (3 floats).")
+      .def("project", &project, "points"_a,
+           "The surface points nearest to each of `points` (N×3): positions N×3, unit normals N×3 and signed "
+           "distances N\n"
+           "(negative inside), all float64. Threaded, lock released.")
       .def(
           "intersect",
           [](const Surface& s, const ArrayLike& origin, const ArrayLike& direction,

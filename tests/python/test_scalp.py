@@ -46,6 +46,10 @@ def test_surface_queries_on_a_cube():
     expected = np.where((outside == 0).all(axis=1), -inside, np.linalg.norm(outside, axis=1))
     # Distances of order 1 in double: a few roundings.
     np.testing.assert_allclose(surface.signed_distance(points), expected, rtol=0, atol=1e-14)
+    feet, normals, distances = surface.project(points)
+    np.testing.assert_array_equal(distances, surface.signed_distance(points))
+    np.testing.assert_allclose(np.linalg.norm(points - feet, axis=1), np.abs(distances), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, rtol=0, atol=1e-14)
     winding = surface.winding_number(points)
     assert ((winding > 0.5) == (expected < 0)).all()
     ray = surface.intersect((0.25, 0.5, -1), (0, 0, 2))
