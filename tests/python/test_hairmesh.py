@@ -226,3 +226,94 @@ def test_the_drag_response_is_what_placing_gives(tuft):
     coif.place(tuft)
     # Both solves stop at an estimated error of 1e-9 of the diagonal, which is 6 here.
     np.testing.assert_allclose(before + response[:, None] * move, tuft.positions, rtol=0, atol=2e-8)
+
+
+def test_moves_act_on_the_selection_only(tuft):
+    before = tuft.positions
+    tips = tuft.layer_vertices(3)
+    rows = tuft.indices(tips)
+    others = np.setdiff1d(np.arange(tuft.vertex_count), rows)
+    tuft.translate((1, 2, 3), tips)
+    np.testing.assert_allclose(tuft.positions[rows], before[rows] + [1, 2, 3], rtol=0, atol=1e-14)
+    tuft.undo()
+    tuft.scale((2, 1, 0.5), tips, pivot=(0, 0, 0))
+    np.testing.assert_allclose(tuft.positions[rows], before[rows] * [2, 1, 0.5], rtol=0, atol=1e-14)
+    tuft.undo()
+    tuft.rotate((0, 1, 0), np.pi / 2, tips, pivot=(0, 0, 0))  # right-handed: z goes to x
+    turned = before[rows] @ np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])
+    np.testing.assert_allclose(tuft.positions[rows], turned, rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(tuft.positions[others], before[others])
+    tuft.undo()
+    np.testing.assert_array_equal(tuft.positions, before)
+
+
+def test_soft_selection_falls_off_with_distance(tuft):
+    corner = tuft.layer_vertices(3)[:1]
+    weights = tuft.soft_selection(corner, radius=2.5)
+    distance = np.linalg.norm(tuft.positions - tuft.positions[tuft.indices(corner)], axis=1)
+    s = np.clip(1 - distance / 2.5, 0, 1)
+    # 3s² − 2s³ of order 1, a few roundings.
+    np.testing.assert_allclose(weights, 3 * s**2 - 2 * s**3, rtol=0, atol=1e-14)
+    before = tuft.positions
+    tuft.translate((0, 1, 0), corner, radius=2.5)
+    np.testing.assert_allclose(tuft.positions - before, weights[:, None] * [0, 1, 0], rtol=0, atol=1e-14)
+
+
+def test_selections_follow_the_structure(tuft):
+    vertex = int(tuft.bundles[0].vertices[2, 0])
+    column = tuft.column(vertex)
+    assert sorted(tuft.layers[tuft.indices(column)].tolist()) == [0, 1, 2, 3]
+    assert set(tuft.bundle_vertices(0, 1)) == set(tuft.bundle(0).vertices[1].tolist())
+    assert len(tuft.connected_bundles(0)) == 12
+    assert len(tuft.quad_strip((0, 0, 0))) in (3, 4)
+
+
+def test_mirror_partners_and_symmetric_moves(tuft):
+    mirror = tuft.find_mirror((2, 0, 0), (1, 0, 0), 1e-6)
+    assert mirror.complete
+    pair = tuft.with_mirrored(mirror, [0])
+    assert len(pair) == 2 and tuft.mirrored_edge(mirror, tuft.mirrored_edge(mirror, (0, 1, 1))) == (0, 1, 1)
+    by = np.zeros((tuft.vertex_count, 3))
+    row = tuft.indices([int(tuft.bundle(0).vertices[3, 0])])[0]
+    by[row] = (0.1, 0.2, 0.3)
+    before = tuft.positions
+    tuft.move_symmetrically(mirror, by)
+    moved = np.flatnonzero((tuft.positions != before).any(axis=1))
+    assert len(moved) == 2
+    other = moved[moved != row][0]
+    np.testing.assert_allclose(tuft.positions[other] - before[other], (-0.1, 0.2, 0.3), rtol=0, atol=1e-14)
+
+
+def test_pins_and_groups(tuft):
+    inner = tuft.vertex_ids[~tuft.external]
+    tuft.set_pinned(inner)
+    assert tuft.external.all() and coif.place(tuft).unknowns == 0
+    tuft.set_pinned(inner, False)
+    assert not tuft.pinned.any()
+    tuft.set_group([0, 1], "fringe")
+    assert tuft.bundle(1).group == "fringe" and "fringe" in tuft.group_names
+    assert coif.grow(tuft, count=50).group_names == tuft.group_names
+
+
+def test_a_mesh_from_a_scalp(tmp_path):
+    scalp = coif.Scalp(coif.example_head(32))
+    cage = scalp.cage(60)
+    assert len(cage) == cage.columns * cage.rows and abs(len(cage) - 60) <= cage.rows
+    mesh = coif.HairMesh.from_scalp(scalp, cage)
+    np.testing.assert_array_equal(mesh.positions, cage.positions)
+    # Every cage vertex lies on the head, to rounding of numbers of size 24.
+    assert np.abs(scalp.surface.signed_distance(mesh.positions)).max() < 1e-12
+    assert 150 < coif.HairMesh.from_scalp(scalp).bundle_count < 250
+    faces = scalp.region(groups=["scalp"]).faces
+    own = coif.HairMesh.from_scalp(scalp, faces)
+    assert own.bundle_count == len(faces)
+    mesh.extrude_faces(mesh.bundle_ids, 2.0)
+    strands = coif.grow(mesh, count=100)
+    roots = strands.points[strands.offsets[:-1].astype(int)]
+    # grow() lays roots on the head that the mesh remembers: float32 of size 24 is good to 2e-6.
+    assert np.abs(scalp.surface.signed_distance(roots)).max() < 1e-5
+    on_cage = coif.grow(mesh, count=100, use_head=False)
+    lifted = on_cage.points[on_cage.offsets[:-1].astype(int)]
+    assert np.abs(scalp.surface.signed_distance(lifted)).max() > 1e-3
+    with pytest.raises(coif.Error, match="face"):
+        coif.HairMesh.from_scalp(scalp, [10**6])
