@@ -124,7 +124,7 @@ inline FaceRef anyUpperFace(const HairMesh& mesh, Draw& draw) {
 inline bool hasNeighbour(const HairMesh& mesh, EdgeRef edge) {
   const auto ends = [&](const Bundle& b, std::uint32_t i) {
     const auto face = b.face(edge.layer);
-    return std::minmax(std::uint32_t(face[i]), std::uint32_t(face[(i + 1) % b.corners]));
+    return std::minmax({face[i], face[(i + 1) % b.corners]});  // by value
   };
   const auto wanted = ends(mesh.bundles()[mesh.indexOf(edge.bundle)], edge.side);
   return std::ranges::any_of(mesh.bundles(), [&](const Bundle& b) {
