@@ -43,16 +43,24 @@ std::string checkCamera(const std::string& text) {
   return parseAngles(text, azimuth, elevation) ? "" : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
 }
 
-/// Frames the hair and the head's part near it, not a whole body.
-Box framed(const StrandSet* strands, const HairMesh& mesh) {
+/// Frames the hair and the face below it, not a whole body. Hair fills no corner of its box, so the box is drawn in.
+Box framed(const StrandSet* strands, const HairMesh& mesh, UpAxis upAxis) {
   std::vector<Vec3> points;
+  for (const HairVertex& vertex : mesh.vertices()) {
+    if (vertex.layer == 0) points.push_back(vertex.position);
+  }
+  const Box scalp = bounds(points);
+  Vec3 chin = scalp.lo;
+  const int up = upAxis == UpAxis::Y ? 1 : 2;
+  chin[up] -= 0.6 * (scalp.hi[up] - scalp.lo[up]);
+  points.push_back(chin);
   if (strands) {
     for (const Vec3f& point : strands->points) points.push_back(point.cast<double>());
   }
   for (const HairVertex& vertex : mesh.vertices()) points.push_back(vertex.position);
   Box box = bounds(points);
-  const Vec3 margin = Vec3::Constant(0.10 * box.diagonal());
-  box.lo -= margin, box.hi += margin;
+  const Vec3 inset = 0.04 * (box.hi - box.lo);
+  box.lo += inset, box.hi -= inset;
   return box;
 }
 
@@ -78,7 +86,7 @@ Status render(const RenderArguments& arguments, Session& session) {
   options.transparentBackground = arguments.transparent;
   double azimuth = scene.look.azimuthDeg, elevation = scene.look.elevationDeg;
   if (!arguments.camera.empty()) parseAngles(arguments.camera, azimuth, elevation);
-  shown.camera = frameBox(framed(shown.strands, *mesh), scene.upAxis, azimuth, elevation,
+  shown.camera = frameBox(framed(shown.strands, *mesh, scene.upAxis), scene.upAxis, azimuth, elevation,
                           double(options.width) / options.height);
   COIF_ASSIGN(Preview preview, Preview::create());
   COIF_ASSIGN(const Picture picture, preview.render(shown, options, context));

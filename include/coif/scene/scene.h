@@ -31,7 +31,7 @@ struct StrandSettings {
 /// How `coif render` looks at it when not told otherwise.
 struct LookSettings {
   double azimuthDeg = 30, elevationDeg = 8;           ///< of the camera; 0, 0 looks at the face
-  Vec3f hairColor = Vec3f(0.30f, 0.17f, 0.09f);       ///< linear RGB reflectance
+  Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);       ///< linear RGB reflectance
 };
 
 struct Scene {

@@ -10,9 +10,9 @@ namespace {
 struct Knot {
   Vec3 tie = Vec3(0, 0.30, -0.52);                   // head space, moved onto the head
   Vec3 axis = Vec3(0, 0.42, -0.91).normalized();     // out of the head
-  double ring = 0.035;                               // radius of the gathered hair
-  double ball = 0.125;                               // radius of the bun
-  double turns = 0.8;                                // of the winding
+  double ring = 0.075;                               // radius of the gathered hair
+  double ball = 0.155;                               // radius of the bun
+  double turns = 0.7;                                // of the winding
 };
 
 Guide towardsTie(const StyleInput& input, const Root& root, const Vec3& port) {
@@ -32,13 +32,13 @@ Guide towardsTie(const StyleInput& input, const Root& root, const Vec3& port) {
 /// From the ring over the ball: out along its far side while turning about the axis.
 void wind(Guide& guide, const Knot& knot, double angle, double depth) {
   const Vec3 right = knot.axis.cross(Vec3(0, 1, 0)).normalized(), up = right.cross(knot.axis);
-  const Vec3 centre = knot.tie + knot.axis * (knot.ball * 0.9);
+  const Vec3 centre = knot.tie + knot.axis * (knot.ball * 0.72);
   const double start = M_PI - std::asin(knot.ring / knot.ball);
   for (int i = 1; i <= 48; ++i) {
     const double s = i / 48.0;
-    const double polar = start + (0.22 * M_PI - start) * s;
+    const double polar = start + (0.06 * M_PI - start) * s;
     const double turn = angle + 2 * M_PI * knot.turns * s;
-    const double radius = knot.ball * (1 - (0.45 * depth) * std::sin(polar) );
+    const double radius = knot.ball * (1 - 0.5 * depth * std::sin(polar));
     guide.push_back(centre + radius * (std::sin(polar) * (std::cos(turn) * right + std::sin(turn) * up) +
                                        std::cos(polar) * knot.axis));
   }
@@ -54,7 +54,7 @@ Result<Hairstyle> bun(const StyleInput& input) {
   constexpr std::uint32_t kScalpLayers = 5, kKnotLayers = 8;
   COIF_TRY(extrudeLayers(mesh, all, kScalpLayers + kKnotLayers));
   Knot knot;
-  knot.tie = input.space.fromScene(input.head.nearest(input.space.toScene(knot.tie)).position) + 0.03 * knot.axis;
+  knot.tie = input.space.fromScene(input.head.nearest(input.space.toScene(knot.tie)).position) + 0.012 * knot.axis;
   const Vec3 right = knot.axis.cross(Vec3(0, 1, 0)).normalized(), up = right.cross(knot.axis);
   const auto guide = [&](const Root& root) {
     // Where on the ring it arrives: from its own side of the head, near roots inside, far ones outside.

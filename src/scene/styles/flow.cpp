@@ -7,17 +7,23 @@ namespace coif::styles {
 
 namespace {
 
-/// Horizontal direction away from the parting line (u = 0, w >= whorl); `side` decides on the line itself.
+/// Horizontal direction away from the parting line (u = 0, w >= whorl), turning backwards towards its end so that the
+/// two sides meet the hair behind in one sweep. `side` decides on the line itself.
 Vec3 awayFromParting(const Vec3& point, double whorl, int side) {
-  const Vec3 foot(0, 0, std::max(point.z(), whorl));
-  Vec3 away(point.x() - foot.x(), 0, point.z() - foot.z());
-  if (point.z() >= whorl && side != 0) away = Vec3(side, 0, 0);
-  return away.norm() > 1e-6 ? Vec3(away.normalized()) : Vec3(0, 0, -1);
+  constexpr double kTurning = 0.22;  // head heights before the parting's end
+  Vec3 away(point.x(), 0, std::min(0.0, point.z() - whorl));
+  if (point.z() >= whorl) {
+    if (side == 0) return Vec3(0, 0, -1);
+    away = Vec3(side, 0, -1.6 * smoothStep(whorl + kTurning, whorl, point.z()));
+  } else {
+    away.z() -= 0.25 * std::abs(point.x()) + 0.02;
+  }
+  return away.normalized();
 }
 
 /// Keeps hair beside the face: in front of the ears and below the forehead it may not come closer to the middle.
 Vec3 keepOffFace(const Vec3& point) {
-  constexpr double kFront = 0.10, kForehead = 0.30, kHalfWidth = 0.33;
+  constexpr double kFront = 0.14, kForehead = 0.22, kHalfWidth = 0.27;
   const double depth = smoothStep(kFront, kFront + 0.12, point.z()) * smoothStep(kForehead, kForehead - 0.18, point.y());
   const double least = kHalfWidth * depth;
   if (std::abs(point.x()) >= least) return point;
@@ -26,12 +32,18 @@ Vec3 keepOffFace(const Vec3& point) {
 
 CombOptions combing(const FlowStyle& style, const Root& root) {
   const double front = smoothStep(0.05, 0.35, root.point.z());
+  const bool ahead = root.point.z() > style.divide;
   CombOptions out;
   out.length = style.length;
   out.direction = [=, side = root.side](const Vec3& point, double s) {
     const double fade = std::exp(-s / style.reach);
     Vec3 wanted = Vec3(0, -1, 0) + style.fan * fade * awayFromParting(point, style.whorl, side) +
                   style.back * front * fade * Vec3(0, 0, -1);
+    if (style.shoulders > 0) {
+      // Over the shoulders hair falls in front or behind, not along them.
+      const double low = smoothStep(-0.25, -0.45, point.y()) * smoothStep(-0.80, -0.65, point.y());
+      wanted += style.shoulders * low * Vec3(-0.5 * point.x(), 0, ahead ? 0.45 : -0.8);
+    }
     if (style.tuck > 0 && style.cut) {
       const double near = smoothStep(style.tuckSpan, 0, point.y() - style.cut(point));
       wanted += style.tuck * near * Vec3(-point.x(), 0, -point.z() - 0.1).normalized();
@@ -80,9 +92,10 @@ Result<Hairstyle> longHair(const StyleInput& input) {
   FlowStyle style;
   style.layers = 9;
   style.length = 2.6;
-  style.back = 1.0;
-  style.thickness = 0.085;
-  style.cut = [](const Vec3& point) { return -1.05 + 0.10 * point.z(); };
+  style.back = 0.8;
+  style.thickness = 0.06;
+  style.shoulders = 0.8;
+  style.cut = [](const Vec3&) { return -1.0; };
   return flow(input, style);
 }
 

@@ -9,10 +9,15 @@ namespace {
 
 constexpr double kHalfStrip = 0.115;  // of the standing strip at the root, head heights
 
-double middleOf(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle) {
-  double sum = 0;
-  for (std::uint32_t v : bundle.face(0)) sum += input.space.fromScene(mesh.position(v)).x();
-  return sum / bundle.corners;
+/// In the strip: the cage's middle four columns, or by the middle of the face where the cage is no grid.
+bool inStrip(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle) {
+  double middle = 0, column = 0;
+  for (std::uint32_t v : bundle.face(0)) {
+    middle += input.space.fromScene(mesh.position(v)).x() / bundle.corners;
+    if (!input.cage.grid.empty()) column += double(input.cage.grid[v][0]) / bundle.corners;
+  }
+  if (input.cage.grid.empty()) return std::abs(middle) < kHalfStrip;
+  return std::abs(column - input.cage.columns / 2) < 2;
 }
 
 /// The fan: straight up at the root, leaning back a little, thinning to a crest.
@@ -45,7 +50,7 @@ Result<Hairstyle> mohawk(const StyleInput& input) {
   COIF_ASSIGN(HairMesh mesh, rootLayer(input));
   std::vector<BundleId> strip, sides;
   for (const Bundle& bundle : mesh.bundles()) {
-    (std::abs(middleOf(mesh, input, bundle)) < kHalfStrip ? strip : sides).push_back(bundle.id);
+    (inStrip(mesh, input, bundle) ? strip : sides).push_back(bundle.id);
   }
   if (strip.empty()) return makeError(ErrorCode::Degenerate, "the cage has no quads along the middle of the head");
   COIF_TRY(extrudeLayers(mesh, strip, 5));
