@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bench/bench.h"
+#include "bench/bench_growth.h"
 #include "bench/bench_text.h"
 #include "bench/place_problem.h"
 #include "coif/base/parallel.h"
@@ -74,6 +75,8 @@ BenchReport benchStrands(const BenchOptions& options) {
       "distance of 64 strands to their splines; the time is that of evaluating all strands into memory that "
       "is there "
       "already. Ratios in the data are to 32 points a strand.";
+  // First, while the process is still small: what it frees stays counted.
+  report.figures = growthFigures(options);
   const HairMesh mesh = placeProblemMesh({20, 10, PlaceKind::Uniform}, options.seed);
   const RootSet roots =
       require(placeRoots(mesh, {options.quick ? 2000u : 100000u, options.seed, {}}, options.context));

@@ -122,8 +122,15 @@ std::string benchCsv(const BenchPlot& plot) {
 }
 
 std::string benchJson(const std::vector<BenchReport>& reports) {
-  nlohmann::ordered_json out{{"machine", machineJson()}, {"benches", nlohmann::ordered_json::array()}};
+  // "bars" repeats the promised figures by name, for programs that only ask whether they hold.
+  nlohmann::ordered_json out{{"machine", machineJson()},
+                             {"bars", nlohmann::ordered_json::object()},
+                             {"benches", nlohmann::ordered_json::array()}};
   for (const BenchReport& r : reports) {
+    for (const BenchFigure& f : r.figures) {
+      if (f.kind == Bar::None) continue;
+      out["bars"][r.name + ": " + f.name] = {{"value", f.value}, {"bar", f.bar}, {"holds", f.holds()}};
+    }
     nlohmann::ordered_json bench{{"name", r.name},   {"title", r.title},     {"seed", r.seed},
                                  {"quick", r.quick}, {"seconds", r.seconds}, {"holds", r.holds()}};
     for (const BenchFigure& f : r.figures) {
