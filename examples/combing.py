@@ -113,6 +113,7 @@ def finish(name, scalp, mesh, count=30000, points=32, density=None, azimuths=(20
         views = []
         for azimuth in azimuths:
             camera = coif.Camera.frame(lo, hi, azimuth, 8, size[0] / size[1])
-            views.append(coif.render(strands, scalp, size=size, camera=camera, hair_color=color, preview=preview))
+            views.append(coif.render(strands, scalp, size=size, camera=camera, hair_color=color,
+                                     background=(0.1, 0.105, 0.115), preview=preview))
         coif.save_png(out.output / f"{name}.png", np.concatenate(views, axis=1))
     print(f"{mesh}\n{strands}\nwrote {out.output / name}.coif, .usdc and .png")

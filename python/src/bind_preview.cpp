@@ -83,11 +83,14 @@ Rgba renderWith(Preview& preview, const View& view, const PreviewOptions& option
 
 Rgba render(const Strands* strands, const std::optional<Head>& head, const HairMeshModel* hairMesh,
             std::tuple<int, int> size, double azimuth, double elevation, std::optional<Camera> camera,
-            const ArrayLike& hairColor, bool transparent, bool shadows, bool lod, int subframes,
-            Preview* preview) {
+            const ArrayLike& hairColor, std::optional<ArrayLike> background, bool transparent, bool shadows,
+            bool lod, int subframes, Preview* preview) {
   PreviewOptions options;
   std::tie(options.width, options.height) = size;
   options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
+  if (background) {
+    options.backgroundTop = options.backgroundBottom = toVec3(*background, "background").cast<float>();
+  }
   options.transparentBackground = transparent;
   options.shadows = shadows;
   options.lod = lod;
@@ -156,15 +159,16 @@ void bindPreview(nb::module_& m) {
       "hair_mesh"_a.none() = nb::none(), nb::kw_only(), "size"_a = nb::make_tuple(1024, 1024),
       "azimuth"_a = 30.0, "elevation"_a = 8.0, "camera"_a.none() = nb::none(),
       "hair_color"_a = nb::make_tuple(defaults.hairColor.x(), defaults.hairColor.y(), defaults.hairColor.z()),
-      "transparent"_a = false, "shadows"_a = true, "lod"_a = true, "subframes"_a = defaults.subframes,
-      "preview"_a.none() = nb::none(),
+      "background"_a.none() = nb::none(), "transparent"_a = false, "shadows"_a = true, "lod"_a = true,
+      "subframes"_a = defaults.subframes, "preview"_a.none() = nb::none(),
       "A picture of strands, a head (Scalp or PolygonMesh) and a hair mesh (drawn over it): height×width×4 "
       "uint8.\n\n"
       "sRGB with straight alpha, rows from the top; `size` is (width, height). Without a camera everything "
       "given is\n"
       "framed from `azimuth` and `elevation` in degrees (0, 0 looks at the face). hair_color: linear RGB "
       "where the\n"
-      "strands have none. lod: fewer, wider strands where no one could tell. subframes: 1 to 64, four "
+      "strands have none; background: one linear RGB instead of the gradient. lod: fewer, wider strands "
+      "where no one could tell. subframes: 1 to 64, four "
       "samples each.\n"
       "preview: a Preview to use again. Needs no window and no GPU. Raises Error where OpenGL 4.5 is "
       "missing.");
