@@ -145,9 +145,7 @@ Model fromScalp(const ScalpModel& scalp, std::optional<std::variant<Cage, ArrayL
     }
     model = rootOf(root, root.faceOffsets);
   }
-  model.head = scalp.surface;
-  model.upAxis = scalp.surface->mesh().upAxis;
-  if (const double unit = scalp.surface->mesh().metersPerUnit; unit > 0) model.metersPerUnit = unit;
+  model.layOn(scalp.surface);
   return model;
 }
 

@@ -42,6 +42,13 @@ class HairMeshModel {
   std::vector<std::uint32_t> vertexIndices(const ArrayLike& ids, const char* argument) const;
   std::uint32_t bundleIndex(std::uint32_t id) const;
 
+  /// Remembers the scalp: its surface for roots, its axis and unit for strands.
+  void layOn(std::shared_ptr<const Surface> scalp) {
+    upAxis = scalp->mesh().upAxis;
+    if (const double unit = scalp->mesh().metersPerUnit; unit > 0) metersPerUnit = unit;
+    head = std::move(scalp);
+  }
+
   std::shared_ptr<const Surface> head;  ///< the surface that grow() lays roots on unless told otherwise
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;

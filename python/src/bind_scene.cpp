@@ -10,8 +10,10 @@
 
 #include "bind.h"
 #include "bind_hairmesh.h"
+#include "bind_scalp.h"
 #include "bind_strands.h"
 #include "coif/scene/evaluate.h"
+#include "coif/scene/hairstyle.h"
 #include "coif/scene/scene.h"
 
 namespace coif::python {
@@ -114,10 +116,44 @@ void bindSettings(nb::module_& m) {
       });
 }
 
+HairMeshModel styled(const std::string& style, const ScalpModel& scalp, const std::optional<Cage>& cage) {
+  const auto names = hairstyleNames();
+  if (std::find(names.begin(), names.end(), style) == names.end()) {
+    throw ErrorException(
+        makeError(ErrorCode::InvalidArgument, "there is no hairstyle named '" + style + "'"));
+  }
+  CageOptions options;
+  options.count = int(suggestedCageCount(style));
+  const Cage root = cage ? *cage : makeCage(scalp, std::nullopt, options);
+  Hairstyle made = Run(0, nb::none())(
+      [&](const Context& context) { return modelHairstyle(style, root, *scalp.surface, context); });
+  HairMeshModel model(std::move(made.mesh));
+  model.layOn(scalp.surface);
+  return model;
+}
+
+void bindHairstyles(nb::module_& m) {
+  m.def(
+      "hairstyle_names",
+      [] {
+        const auto names = hairstyleNames();
+        return std::vector<std::string>(names.begin(), names.end());
+      },
+      "Names that model_hairstyle() takes.\n\nA list of strings.");
+  m.def("model_hairstyle", &styled, "style"_a, "scalp"_a, "cage"_a.none() = nb::none(),
+        "A ready hairstyle as a HairMesh on a Scalp, modelled by the library's own operations: a place to "
+        "start from.\n\n"
+        "style: one of hairstyle_names(). cage: a Cage of the scalp; None: one that suits the style, on the "
+        "hair-bearing\n"
+        "part. The interpreter lock is released. Raises Error for an unknown style or a cage that cannot "
+        "carry it.");
+}
+
 }  // namespace
 
 void bindScene(nb::module_& m) {
   bindSettings(m);
+  bindHairstyles(m);
   nb::class_<SceneModel> c(
       m, "Scene",
       "The document: which head, which hair mesh, how strands grow on it. A .coif file.\n\n"
@@ -195,6 +231,20 @@ void bindScene(nb::module_& m) {
       .def_prop_rw(
           "up_axis", [](const SceneModel& s) { return s.scene.upAxis; },
           [](SceneModel& s, UpAxis axis) { s.scene.upAxis = axis; }, "Which axis points up.")
+      .def_prop_rw(
+          "azimuth", [](const SceneModel& s) { return s.scene.look.azimuthDeg; },
+          [](SceneModel& s, double degrees) { s.scene.look.azimuthDeg = degrees; },
+          "Where `coif render` looks from, degrees around the head; 0: at the face.")
+      .def_prop_rw(
+          "elevation", [](const SceneModel& s) { return s.scene.look.elevationDeg; },
+          [](SceneModel& s, double degrees) { s.scene.look.elevationDeg = degrees; },
+          "Where `coif render` looks from, degrees above the horizon.")
+      .def_prop_rw(
+          "hair_color", [](const SceneModel& s) { return own(s.scene.look.hairColor.cast<double>()); },
+          [](SceneModel& s, const ArrayLike& color) {
+            s.scene.look.hairColor = toVec3(color, "hair_color").cast<float>();
+          },
+          nb::rv_policy::reference, "Linear RGB of the hair, 3 floats.")
       .def_prop_ro(
           "file", [](const SceneModel& s) { return s.scene.file; },
           "Where it was loaded from or saved to; '' for a new one.")

@@ -17,8 +17,10 @@ def scene(tuft):
 
 def test_a_scene_survives_its_file(scene, tmp_path):
     path = tmp_path / "tuft.coif"
+    scene.azimuth, scene.elevation, scene.hair_color = 45, -3, (0.5, 0.25, 0.125)
     scene.save(path)
     again = coif.Scene.load(path)
+    assert (again.azimuth, again.elevation, again.hair_color.tolist()) == (45, -3, [0.5, 0.25, 0.125])
     assert again.hair_mesh == scene.hair_mesh and again.name == "tuft" and again.file == path
     assert (again.strands.count, again.strands.points, again.strands.seed) == (400, 9, 5)
     again.save(tmp_path / "again.coif")
@@ -92,3 +94,15 @@ def test_saving_where_nothing_can_be_written_is_an_error(scene, tmp_path):
 def test_exporting_writes_the_same_strands(scene, tmp_path):
     scene.export(tmp_path / "tuft.hair", use_head=False)
     assert np.array_equal(coif.StrandSet.load(tmp_path / "tuft.hair").points, scene.evaluate(use_head=False).points)
+
+
+def test_ready_hairstyles_are_a_start():
+    scalp = coif.Scalp(coif.example_head())
+    assert "bob" in coif.hairstyle_names()
+    mesh = coif.model_hairstyle("bob", scalp)
+    assert mesh.faults() == [] and mesh.layer_count > 2
+    strands = coif.grow(mesh, count=300)
+    # Hair lies outside the head; a strand between the columns may graze it by a fraction of its bend.
+    assert (scalp.surface.signed_distance(strands.points) > -0.3).mean() > 0.99
+    with pytest.raises(ValueError, match="beehive"):
+        coif.model_hairstyle("beehive", scalp)
