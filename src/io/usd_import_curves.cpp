@@ -1,6 +1,7 @@
 // Strands out of a USD layer's BasisCurves.
 #include <Eigen/LU>
 #include <cmath>
+#include <cstring>
 #include <unordered_map>
 #include <utility>
 
@@ -127,24 +128,25 @@ class CurvesImport {
 
   /// Values of `width` numbers at every strand point, from whatever interpolation fits their number; empty
   /// when none does. A stated interpolation goes first.
-  std::vector<float> atPoints(const std::vector<float>& values, std::string_view stated, std::size_t width) {
+  std::vector<float> atPoints(std::vector<float> values, std::string_view stated, std::size_t width) {
     const std::uint64_t count = values.size() / width;
     const std::uint64_t vertices = layout_.firstVertex.back(), varying = layout_.firstVarying.back();
     auto is = [&](std::string_view name, std::uint64_t size) {
       return count == size && (stated == name || stated.empty());
     };
-    if (is("vertex", vertices)) return fromVertices(values, width);
+    if (is("vertex", vertices)) return fromVertices(std::move(values), width);
     if (is("varying", varying)) return fromVarying(values, width);
     if (is("uniform", layout_.sizes.size())) return fromCurves(values, width);
     if (count == 1) return repeated(values, width);
     // Layers that state another interpolation than they hold (a common export fault) are read by their
     // number.
-    if (count == vertices) return fromVertices(values, width);
+    if (count == vertices) return fromVertices(std::move(values), width);
     if (count == layout_.sizes.size()) return fromCurves(values, width);
     return {};
   }
 
-  std::vector<float> fromVertices(const std::vector<float>& values, std::size_t width) {
+  std::vector<float> fromVertices(std::vector<float> values, std::size_t width) {
+    if (layout_.kind.plain() && layout_.kept.size() == layout_.sizes.size()) return values;
     std::vector<float> out(layout_.offsets.back() * width);
     for (std::size_t s = 0; s < layout_.kept.size(); ++s) {
       const std::uint32_t curve = layout_.kept[s];
@@ -227,7 +229,7 @@ class CurvesImport {
     std::vector<float> values = primvarNumbers(prim_, name, int(width));
     if (values.empty()) return values;
     COIF_TRY(budget_.take(layout_.offsets.back(), width * sizeof(float)));
-    values = atPoints(values, interpolationOf(prim_, name), width);
+    values = atPoints(std::move(values), interpolationOf(prim_, name), width);
     if (values.empty()) note("'" + name + "' fits neither points nor curves; left out.");
     return values;
   }
@@ -321,6 +323,10 @@ void join(std::vector<T>& all, std::vector<T>& part, std::size_t before, std::si
   if (all.empty() && part.empty()) return;
   all.resize(before, rest);
   part.resize(count, rest);
+  if (before == 0) {
+    all = std::move(part);
+    return;
+  }
   all.insert(all.end(), part.begin(), part.end());
   part = {};
 }
@@ -440,8 +446,9 @@ Result<StrandSet> readStrands(Bytes bytes, MemoryBudget& budget) {
     groups.assign(*placed.prim, *part);
     append(all, std::move(*part), all.metersPerUnit);
   }
-  if (all.strandCount() == 0 && !unusable.empty()) {
-    return makeError(ErrorCode::Unsupported, "no curve of the file can be used: " + unusable);
+  if (all.strandCount() == 0) {
+    return makeError(ErrorCode::Degenerate,
+                     "the file holds no strand" + (unusable.empty() ? "" : ": " + unusable));
   }
   groups.finish(all);
   describe(all, layer, notes);

@@ -1,5 +1,7 @@
 // Meshes out of a USD layer.
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "formats.h"
@@ -88,7 +90,8 @@ class MeshImport {
       }
       left -= std::uint64_t(count);
     }
-    if (left > 0) return makeError(ErrorCode::Malformed, "faceVertexCounts do not add up to faceVertexIndices");
+    if (left > 0)
+      return makeError(ErrorCode::Malformed, "faceVertexCounts do not add up to faceVertexIndices");
     const auto vertices = std::int64_t(source.points.size() / 3);
     for (std::size_t c = 0; c < source.corners.size(); ++c) {
       if (source.corners[c] < 0 || source.corners[c] >= vertices) {
@@ -118,7 +121,9 @@ class MeshImport {
     const bool perCorner = source.uvInterpolation == "faceVarying" && count == source.corners.size();
     const bool perVertex = (source.uvInterpolation == "vertex" || source.uvInterpolation == "varying") &&
                            std::int64_t(count) == vertices;
-    if (!perCorner && !perVertex) source.uvs.clear();
+    const bool finite =
+        std::all_of(source.uvs.begin(), source.uvs.end(), [](float x) { return std::isfinite(x); });
+    if (!finite || (!perCorner && !perVertex)) source.uvs.clear();
     return {};
   }
 
@@ -208,6 +213,7 @@ Result<PolygonMesh> readUsdMesh(Bytes bytes, const std::filesystem::path& path) 
     MeshImport import(budget);
     for (const Placed& placed : meshes) COIF_TRY(import.add(placed));
     PolygonMesh mesh = import.finish();
+    if (mesh.faceCount() == 0) return makeError(ErrorCode::Degenerate, "the file holds no polygon");
     mesh.metersPerUnit = metersPerUnit(layer, 0);
     mesh.upAxis = upAxis(layer);
     mesh.notes.insert(mesh.notes.begin(), notes.begin(), notes.end());

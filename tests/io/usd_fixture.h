@@ -40,7 +40,7 @@ inline StrandSet richStrands(std::size_t count) {
     for (std::uint32_t i = 0; i < corners; ++i) set.weights.push_back(float(r.uniform(100 + i)));
     set.weightOffsets.push_back(set.weights.size());
   }
-  // Floats at the ends of the range, and 16777217 + 0.5 ulp neighbours, where decimals round twice.
+  // Floats at the ends of the range, and some whose shortest decimals are hard.
   const float odd[] = {0.f,
                        -0.f,
                        std::numeric_limits<float>::denorm_min(),

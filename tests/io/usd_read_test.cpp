@@ -433,6 +433,7 @@ TEST(Usd, SaysWhereTextIsWrong) {
   EXPECT_EQ(strandError(nested(100000)).code, ErrorCode::Unsupported);
   EXPECT_EQ(strandError("#usda 1.0\n" + std::string(1000000, '(')).code, ErrorCode::Malformed);
   EXPECT_EQ(strandError("PK\x03\x04 zip").code, ErrorCode::Unsupported);
+  EXPECT_EQ(strandError("#usda 1.0\ndef BasisCurves \"c\" {}").code, ErrorCode::Degenerate);
   EXPECT_EQ(strandError("#usda 1.0\ndef Mesh \"m\" {}").code, ErrorCode::Unsupported);
 }
 
