@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "coif/scalp/polygon_mesh.h"
+#include "coif/strands/strand_set.h"
 #include "usd_layer.h"
 
 namespace coif::io::usd {
@@ -32,5 +33,9 @@ UpAxis upAxis(const Layer& layer);
 std::vector<float> primvarNumbers(const Prim& prim, const std::string& name, int components);
 /// The stated interpolation of an attribute; empty when it says none.
 std::string_view interpolationOf(const Prim& prim, std::string_view name);
+
+/// The strands of a BasisCurves prim, in the world; what was converted or left out goes to `notes`. Groups
+/// are numbers without names yet. Errors: Malformed (counts that do not add up to the points), TooLarge.
+Result<StrandSet> readCurves(const Placed& placed, MemoryBudget& budget, std::vector<std::string>& notes);
 
 }  // namespace coif::io::usd
