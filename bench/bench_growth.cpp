@@ -22,7 +22,9 @@ double memoryLine(const std::string& name) {
 }
 
 /// Lowers the high-water mark to what is in use now.
-void resetPeak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+void resetPeak() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 GrowResult growHair(const HairMesh& mesh, std::size_t count, const BenchOptions& options) {
   GrowOptions growing;
@@ -55,8 +57,10 @@ std::vector<BenchFigure> growthFigures(const BenchOptions& options) {
     std::vector<float> widths(few * 32, 1.0f);
   });
   const std::string what = std::to_string(few) + " strands of 32 points";
-  figures.push_back({"growing " + what + " / filling a new buffer of the points", growing / filling, "", Bar::AtMost, 3});
-  figures.push_back({"growing " + what + " / filling new buffers of points and widths", growing / fillingAll, ""});
+  figures.push_back(
+      {"growing " + what + " / filling a new buffer of the points", growing / filling, "", Bar::AtMost, 3});
+  figures.push_back(
+      {"growing " + what + " / filling new buffers of points and widths", growing / fillingAll, ""});
   return figures;
 }
 

@@ -5,8 +5,8 @@
 
 namespace coif {
 
-/// Time of grow() for 100 000 × 32 points on all cores against allocating and filling buffers of the same size, and
-/// peak memory of a million strands against their own bytes.
+/// Time of grow() for 100 000 × 32 points on all cores against allocating and filling buffers of the same
+/// size, and peak memory of a million strands against their own bytes.
 std::vector<BenchFigure> growthFigures(const BenchOptions& options);
 
 }  // namespace coif

@@ -25,11 +25,12 @@ Status bench(const BenchArguments& arguments, Session& session) {
     session.say(report.title);
     for (const BenchFigure& figure : report.figures) {
       char line[256];
-      std::snprintf(line, sizeof line, "  %-52s %12.4g %-12s", figure.name.c_str(), figure.value, figure.unit.c_str());
+      std::snprintf(line, sizeof line, "  %-52s %12.4g %-12s", figure.name.c_str(), figure.value,
+                    figure.unit.c_str());
       std::string text = line;
       if (figure.kind != Bar::None) {
-        std::snprintf(line, sizeof line, " %s %.4g  %s", figure.kind == Bar::AtMost ? "at most" : "at least", figure.bar,
-                      figure.holds() ? "holds" : "MISSED");
+        std::snprintf(line, sizeof line, " %s %.4g  %s", figure.kind == Bar::AtMost ? "at most" : "at least",
+                      figure.bar, figure.holds() ? "holds" : "MISSED");
         text += line;
       }
       session.say(text);

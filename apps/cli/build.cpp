@@ -41,7 +41,8 @@ Status build(const BuildArguments& arguments, Session& session) {
   }
   COIF_ASSIGN(const StrandSet* strands, evaluation.strands(scene, context));
   if (arguments.evaluate.explain && !session.json) std::cout << explainText(evaluation.reports());
-  if (!arguments.evaluate.reportFile.empty()) COIF_TRY(writeReport(evaluation, arguments.evaluate.reportFile));
+  if (!arguments.evaluate.reportFile.empty())
+    COIF_TRY(writeReport(evaluation, arguments.evaluate.reportFile));
   nlohmann::ordered_json result = nlohmann::ordered_json::parse(reportJson(evaluation.reports()));
   result["strands"] = strands->strandCount();
   result["points"] = strands->pointCount();
@@ -57,7 +58,9 @@ void addBuild(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("build", "Grow a scene's strands and write them to files");
   command->footer("Example:\n  coif build bob.coif -o bob.usdc -o bob.glb -o bob.hair --strands 100000\n");
   command->add_option("scene", arguments->scene, "The scene, a .coif file")->required();
-  command->add_option("-o,--output", arguments->outputs, "A file to write: .usda, .usdc, .glb, .gltf or .hair; repeatable")
+  command
+      ->add_option("-o,--output", arguments->outputs,
+                   "A file to write: .usda, .usdc, .glb, .gltf or .hair; repeatable")
       ->required()
       ->allow_extra_args(false);
   command->add_option("--mesh", arguments->meshKind, "Mesh beside the lines in glTF")

@@ -16,12 +16,13 @@ Status check(const std::string& path, Session& session) {
   }
   Evaluation evaluation;
   if (const auto head = evaluation.head(scene, session.context()); !head.ok()) {
-    faults.push_back({{"invariant", "head"}, {"element", head.error().file}, {"message", head.error().message}});
+    faults.push_back(
+        {{"invariant", "head"}, {"element", head.error().file}, {"message", head.error().message}});
     session.say(path + ": " + head.error().text());
   }
   if (faults.empty()) {
-    session.say(path + ": all invariants hold, " + std::to_string(scene.hairMesh.bundles().size()) + " bundles, " +
-                std::to_string(scene.hairMesh.vertices().size()) + " vertices");
+    session.say(path + ": all invariants hold, " + std::to_string(scene.hairMesh.bundles().size()) +
+                " bundles, " + std::to_string(scene.hairMesh.vertices().size()) + " vertices");
   } else {
     session.exit = Exit::InputFault;
   }
@@ -33,7 +34,8 @@ Status check(const std::string& path, Session& session) {
 
 void addCheck(CLI::App& app, Session& session) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("check", "Check every invariant of a scene; exit status 1 on a fault");
+  CLI::App* command =
+      app.add_subcommand("check", "Check every invariant of a scene; exit status 1 on a fault");
   command->footer("Example:\n  coif check bob.coif\n");
   command->add_option("scene", *path, "The scene, a .coif file")->required();
   command->callback([path, &session] {

@@ -16,14 +16,22 @@ bool progressShown = false;  // of the terminal, which there is one of
 
 const char* codeName(ErrorCode code) {
   switch (code) {
-    case ErrorCode::InvalidArgument: return "invalid-argument";
-    case ErrorCode::NotFound: return "not-found";
-    case ErrorCode::Unreadable: return "unreadable";
-    case ErrorCode::Malformed: return "malformed";
-    case ErrorCode::Unsupported: return "unsupported";
-    case ErrorCode::Degenerate: return "degenerate";
-    case ErrorCode::TooLarge: return "too-large";
-    case ErrorCode::Cancelled: return "cancelled";
+    case ErrorCode::InvalidArgument:
+      return "invalid-argument";
+    case ErrorCode::NotFound:
+      return "not-found";
+    case ErrorCode::Unreadable:
+      return "unreadable";
+    case ErrorCode::Malformed:
+      return "malformed";
+    case ErrorCode::Unsupported:
+      return "unsupported";
+    case ErrorCode::Degenerate:
+      return "degenerate";
+    case ErrorCode::TooLarge:
+      return "too-large";
+    case ErrorCode::Cancelled:
+      return "cancelled";
   }
   return "?";
 }

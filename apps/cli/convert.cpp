@@ -25,12 +25,15 @@ Status convert(const std::string& from, const std::string& to, Session& session)
 
 void addConvert(CLI::App& app, Session& session) {
   auto files = std::make_shared<std::pair<std::string, std::string>>();
-  CLI::App* command = app.add_subcommand("convert", "Convert strands between .hair, .usda, .usdc, .glb and .gltf");
+  CLI::App* command =
+      app.add_subcommand("convert", "Convert strands between .hair, .usda, .usdc, .glb and .gltf");
   command->footer("Example:\n  coif convert wWavy.hair wWavy.usdc\n");
   command->add_option("input", files->first, "The strands to read")->required();
-  command->add_option("output", files->second, "The file to write; its extension chooses the format")->required();
+  command->add_option("output", files->second, "The file to write; its extension chooses the format")
+      ->required();
   command->callback([files, &session] {
-    if (const Status status = convert(files->first, files->second, session); !status.ok()) session.fail(status.error());
+    if (const Status status = convert(files->first, files->second, session); !status.ok())
+      session.fail(status.error());
   });
 }
 

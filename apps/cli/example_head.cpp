@@ -13,7 +13,8 @@ void addExampleHead(CLI::App& app, Session& session) {
   command->add_option("-o,--output", *output, "The OBJ file to write")->required();
   command->callback([output, &session] {
     const PolygonMesh head = makeExampleHead();
-    if (const Status status = savePolygonMesh(head, *output); !status.ok()) return session.fail(status.error());
+    if (const Status status = savePolygonMesh(head, *output); !status.ok())
+      return session.fail(status.error());
     session.say("wrote " + *output + ": " + std::to_string(head.faceCount()) + " polygons");
     session.finish({{"polygons", head.faceCount()}, {"vertices", head.vertexCount()}});
   });

@@ -6,9 +6,11 @@
 
 int main(int argc, char** argv) {
   using namespace coif::cli;
-  CLI::App app{"Coif models hair with hair meshes: from a head to strands for Blender, Unreal and renderers."};
-  app.footer("Example:\n  coif new --scalp head.obj --style bob -o bob.coif\n"
-             "  coif build bob.coif -o bob.usdc -o bob.glb --strands 100000\n");
+  CLI::App app{
+      "Coif models hair with hair meshes: from a head to strands for Blender, Unreal and renderers."};
+  app.footer(
+      "Example:\n  coif new --scalp head.obj --style bob -o bob.coif\n"
+      "  coif build bob.coif -o bob.usdc -o bob.glb --strands 100000\n");
   app.set_version_flag("--version", "coif " COIF_VERSION);
   app.require_subcommand(1);
   app.fallthrough();

@@ -19,7 +19,7 @@ namespace {
 struct NewArguments {
   std::string scalp, region = "auto", cage, style, output;
   std::optional<double> metersPerUnit, weldTolerance;
-  std::string up, forward;
+  std::string up, forward, mirror;
 };
 
 constexpr double kHeadMeters = 0.24;  // a head 24 cm tall, where a file says nothing of its unit
@@ -30,7 +30,8 @@ Result<std::optional<Vec3>> axis(const std::string& text) {
   const bool negative = text.front() == '-';
   const std::size_t found = names.find(char(std::tolower(text.back())));
   if (text.size() != (negative ? 2u : 1u) || found == std::string::npos) {
-    return makeError(ErrorCode::InvalidArgument, "'" + text + "' is no axis: x, y, z, -x, -y or -z is wanted");
+    return makeError(ErrorCode::InvalidArgument,
+                     "'" + text + "' is no axis: x, y, z, -x, -y or -z is wanted");
   }
   Vec3 out = Vec3::Zero();
   out[int(found)] = negative ? -1 : 1;
@@ -42,19 +43,27 @@ Result<std::uint64_t> fileHash(const std::string& path) {
   std::uint64_t hash = bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += 8) {
     std::uint64_t word = 0;
-    for (std::size_t j = i; j < std::min(bytes.size(), i + 8); ++j) word = word << 8 | std::uint64_t(bytes[j]);
+    for (std::size_t j = i; j < std::min(bytes.size(), i + 8); ++j)
+      word = word << 8 | std::uint64_t(bytes[j]);
     hash = hashCombine(hash, word);
   }
   return hash;
 }
 
-Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, const Region& region, const Context& context) {
+Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, const Region& region,
+                    const Context& context) {
   CageOptions options;
   options.count = int(suggestedCageCount(arguments.style));
   if (arguments.cage == "exact") {
     options.exact = true;
   } else if (!arguments.cage.empty()) {
     options.count = std::stoi(arguments.cage);
+  }
+  if (arguments.mirror == "none") {
+    options.useMirror = false;
+  } else if (!arguments.mirror.empty()) {
+    COIF_ASSIGN(const auto v, numbers(arguments.mirror, 6));
+    COIF_ASSIGN(options.mirror, givenMirrorPlane(head, Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])));
   }
   return buildCage(head.mesh(), head, region, options, context);
 }
@@ -91,7 +100,7 @@ Status makeScene(const NewArguments& arguments, Session& session) {
   scene.name = arguments.style;
   scene.head.path = std::filesystem::absolute(arguments.scalp);
   COIF_ASSIGN(scene.head.contentHash, fileHash(arguments.scalp));
-  scene.metersPerUnit = arguments.metersPerUnit    ? *arguments.metersPerUnit
+  scene.metersPerUnit = arguments.metersPerUnit  ? *arguments.metersPerUnit
                         : mesh.metersPerUnit > 0 ? mesh.metersPerUnit
                                                  : kHeadMeters / cage.frame.height;
   scene.upAxis = mesh.upAxis;
@@ -101,8 +110,8 @@ Status makeScene(const NewArguments& arguments, Session& session) {
   COIF_TRY(saveScene(scene, arguments.output));
   session.say("wrote " + arguments.output + ": " + arguments.style + ", " +
               std::to_string(scene.hairMesh.bundles().size()) + " bundles, " +
-              std::to_string(scene.hairMesh.vertices().size()) + " vertices (" + std::to_string(hairstyle.report.pinned) +
-              " pinned)");
+              std::to_string(scene.hairMesh.vertices().size()) + " vertices (" +
+              std::to_string(hairstyle.report.pinned) + " pinned)");
   session.finish({{"scene", arguments.output},
                   {"bundles", scene.hairMesh.bundles().size()},
                   {"vertices", scene.hairMesh.vertices().size()},
@@ -115,7 +124,8 @@ Status makeScene(const NewArguments& arguments, Session& session) {
 /// "exact" or a number of quads.
 std::string checkCage(const std::string& text) {
   if (text == "exact") return "";
-  const bool digits = !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == std::string::npos;
   if (digits && std::stoul(text) >= 4 && std::stoul(text) <= 100000) return "";
   return "--cage wants 'exact' or a number of quads from 4 to 100000, not '" + text + "'";
 }
@@ -127,21 +137,28 @@ void addNew(CLI::App& app, Session& session) {
   std::vector<std::string> styles(hairstyleNames().begin(), hairstyleNames().end());
   CLI::App* command = app.add_subcommand("new", "Model a hairstyle on a head");
   command->footer("Example:\n  coif new --scalp head.obj --style bob -o bob.coif\n");
-  command->add_option("--scalp", arguments->scalp, "The head: OBJ, PLY, OFF, STL, GLB, glTF or USD")->required();
+  command->add_option("--scalp", arguments->scalp, "The head: OBJ, PLY, OFF, STL, GLB, glTF or USD")
+      ->required();
   command->add_option("--style", arguments->style, "The hairstyle")->required()->check(CLI::IsMember(styles));
   command->add_option("-o,--output", arguments->output, "The scene to write, a .coif file")->required();
   command->add_option("--region", arguments->region, std::string("Where hair grows: ") + kRegionHelp);
-  command->add_option("--cage", arguments->cage, "Number of quads of the root layer, or 'exact' for the head's own polygons")
+  command
+      ->add_option("--cage", arguments->cage,
+                   "Number of quads of the root layer, or 'exact' for the head's own polygons")
       ->check(CLI::Validator(checkCage, "N|exact"));
-  command->add_option("--meters-per-unit", arguments->metersPerUnit, "Unit of the head's file")->check(CLI::PositiveNumber);
-  command->add_option("--weld", arguments->weldTolerance, "First weld vertices closer than this")->check(CLI::NonNegativeNumber);
+  command->add_option("--meters-per-unit", arguments->metersPerUnit, "Unit of the head's file")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--weld", arguments->weldTolerance, "First weld vertices closer than this")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--mirror", arguments->mirror,
+                      "Mirror plane as px,py,pz,nx,ny,nz, or 'none'; found unless given");
   command->add_option("--up", arguments->up, "Up axis of the head, such as z");
   command->add_option("--forward", arguments->forward, "Axis that the face looks along, such as -y");
   command->callback([arguments, &session] {
     if (const Status status = makeScene(*arguments, session); !status.ok()) {
       // A wrong word on the command line is bad usage; anything else is the input's fault.
       const Error& error = status.error();
-      const bool usage = error.code == ErrorCode::InvalidArgument && (error.place == "--region" || error.file.empty());
+      const bool usage = error.code == ErrorCode::InvalidArgument && error.file.empty();
       if (usage) return session.usage(error.text());
       session.fail(inFile(error, arguments->scalp));
     }

@@ -19,7 +19,7 @@ std::vector<std::string> splitAt(const std::string& text, char separator) {
 }
 
 Error badValue(const std::string& text, const std::string& wanted) {
-  return makeError(ErrorCode::InvalidArgument, "'" + text + "' is not " + wanted, "--region");
+  return makeError(ErrorCode::InvalidArgument, "'" + text + "' is not " + wanted);
 }
 
 template <class T>
@@ -27,6 +27,8 @@ bool parseWhole(const std::string& text, T& value) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   return code == std::errc() && end == text.data() + text.size();
 }
+
+}  // namespace
 
 Result<std::vector<double>> numbers(const std::string& text, std::size_t count) {
   std::vector<double> out;
@@ -39,15 +41,19 @@ Result<std::vector<double>> numbers(const std::string& text, std::size_t count) 
   return out;
 }
 
+namespace {
+
 Result<std::vector<std::uint32_t>> faceList(const std::string& text, std::size_t faceCount) {
   std::vector<std::uint32_t> out;
   for (const std::string& part : splitAt(text, ',')) {
     const auto ends = splitAt(part, '-');
     std::uint32_t first = 0, last = 0;
-    if (ends.size() > 2 || !parseWhole(ends.front(), first) || !parseWhole(ends.back(), last) || last < first) {
+    if (ends.size() > 2 || !parseWhole(ends.front(), first) || !parseWhole(ends.back(), last) ||
+        last < first) {
       return badValue(part, "a face number or a range such as 10-20");
     }
-    if (last >= faceCount) return badValue(part, "within the mesh, which has " + std::to_string(faceCount) + " faces");
+    if (last >= faceCount)
+      return badValue(part, "within the mesh, which has " + std::to_string(faceCount) + " faces");
     for (std::uint32_t face = first; face <= last; ++face) out.push_back(face);
   }
   return out;

@@ -14,4 +14,7 @@ inline constexpr const char* kRegionHelp =
 /// Errors: InvalidArgument for a word that is none of these, and those of the region functions.
 Result<Region> regionFromText(const std::string& text, const Surface& head, const CapOptions& cap);
 
+/// Exactly `count` finite numbers with commas between them. Errors: InvalidArgument.
+Result<std::vector<double>> numbers(const std::string& text, std::size_t count);
+
 }  // namespace coif::cli

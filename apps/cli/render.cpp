@@ -23,27 +23,32 @@ struct RenderArguments {
 
 bool parseSize(const std::string& text, int& width, int& height) {
   int used = 0;
-  return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 && used == int(text.size()) && width >= 1 &&
-         height >= 1 && width <= 8192 && height <= 8192;
+  return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 && used == int(text.size()) &&
+         width >= 1 && height >= 1 && width <= 8192 && height <= 8192;
 }
 
 bool parseAngles(const std::string& text, double& azimuth, double& elevation) {
   int used = 0;
-  return std::sscanf(text.c_str(), "%lf,%lf%n", &azimuth, &elevation, &used) == 2 && used == int(text.size()) &&
-         std::abs(azimuth) <= 1e6 && std::abs(elevation) <= 90;
+  return std::sscanf(text.c_str(), "%lf,%lf%n", &azimuth, &elevation, &used) == 2 &&
+         used == int(text.size()) && std::abs(azimuth) <= 1e6 && std::abs(elevation) <= 90;
 }
 
 std::string checkSize(const std::string& text) {
   int width, height;
-  return parseSize(text, width, height) ? "" : "--size wants WIDTHxHEIGHT from 1x1 to 8192x8192, not '" + text + "'";
+  return parseSize(text, width, height)
+             ? ""
+             : "--size wants WIDTHxHEIGHT from 1x1 to 8192x8192, not '" + text + "'";
 }
 
 std::string checkCamera(const std::string& text) {
   double azimuth, elevation;
-  return parseAngles(text, azimuth, elevation) ? "" : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
+  return parseAngles(text, azimuth, elevation)
+             ? ""
+             : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
 }
 
-/// Frames the hair and the face below it, not a whole body. Hair fills no corner of its box, so the box is drawn in.
+/// Frames the hair and the face below it, not a whole body. Hair fills no corner of its box, so the box is
+/// drawn in.
 Box framed(const StrandSet* strands, const HairMesh& mesh, UpAxis upAxis) {
   std::vector<Vec3> points;
   for (const HairVertex& vertex : mesh.vertices()) {
@@ -79,8 +84,9 @@ Status render(const RenderArguments& arguments, Session& session) {
   if (head) shown.head = &head->mesh();
   PreviewOptions options;
   parseSize(arguments.size, options.width, options.height);
-  options.hairColor = arguments.color.size() == 3 ? Vec3f(arguments.color[0], arguments.color[1], arguments.color[2])
-                                                  : scene.look.hairColor;
+  options.hairColor = arguments.color.size() == 3
+                          ? Vec3f(arguments.color[0], arguments.color[1], arguments.color[2])
+                          : scene.look.hairColor;
   options.shadows = !arguments.noShadows;
   options.lod = !arguments.noLod;
   options.transparentBackground = arguments.transparent;
@@ -115,7 +121,8 @@ void addRender(CLI::App& app, Session& session) {
   command->footer("Example:\n  coif render bob.coif -o bob.png --size 1024x1024 --camera 30,8\n");
   command->add_option("scene", arguments->scene, "The scene, a .coif file")->required();
   command->add_option("-o,--output", arguments->output, "The PNG file to write")->required();
-  command->add_option("--size", arguments->size, "Pixels, WIDTHxHEIGHT")->check(CLI::Validator(checkSize, "WxH"));
+  command->add_option("--size", arguments->size, "Pixels, WIDTHxHEIGHT")
+      ->check(CLI::Validator(checkSize, "WxH"));
   command->add_option("--camera", arguments->camera, "Azimuth and elevation in degrees; 0,0 looks along -z")
       ->check(CLI::Validator(checkCamera, "AZ,EL"));
   command->add_option("--color", arguments->color, "Hair colour, linear R G B from 0 to 1")
@@ -142,7 +149,8 @@ namespace coif::cli {
 void addRender(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("render", "Make a picture of a scene (left out of this build)");
   command->allow_extras();
-  command->callback([&session] { session.usage("this Coif was built without the preview room, so it cannot render"); });
+  command->callback(
+      [&session] { session.usage("this Coif was built without the preview room, so it cannot render"); });
 }
 
 }  // namespace coif::cli

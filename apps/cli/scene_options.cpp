@@ -3,13 +3,17 @@
 namespace coif::cli {
 
 void StrandArguments::addTo(CLI::App& command) {
-  command.add_option("--strands", count, "How many strands")->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 32));
+  command.add_option("--strands", count, "How many strands")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 32));
   auto* fixed = command.add_option("--points", points, "Points a strand")->check(CLI::Range(2u, 65536u));
-  command.add_option("--tolerance", tolerance, "As many points as keep the chord error below this, in scene units")
+  command
+      .add_option("--tolerance", tolerance,
+                  "As many points as keep the chord error below this, in scene units")
       ->check(CLI::PositiveNumber)
       ->excludes(fixed);
   command.add_option("--seed", seed, "Seed of the root distribution");
-  command.add_option("--width", width, "Hair diameter at the root, in scene units")->check(CLI::PositiveNumber);
+  command.add_option("--width", width, "Hair diameter at the root, in scene units")
+      ->check(CLI::PositiveNumber);
 }
 
 void StrandArguments::apply(Scene& scene) const {

@@ -10,11 +10,15 @@ namespace coif {
 
 namespace {
 
-std::uint64_t hashDouble(std::uint64_t hash, double value) { return hashCombine(hash, std::bit_cast<std::uint64_t>(value)); }
+std::uint64_t hashDouble(std::uint64_t hash, double value) {
+  return hashCombine(hash, std::bit_cast<std::uint64_t>(value));
+}
 
-std::uint64_t strandsKey(const StrandSettings& s, std::uint64_t mesh, std::uint64_t head, double metersPerUnit) {
+std::uint64_t strandsKey(const StrandSettings& s, std::uint64_t mesh, std::uint64_t head,
+                         double metersPerUnit) {
   std::uint64_t hash = hashCombine(mesh, head);
-  for (std::uint64_t value : {std::uint64_t(s.count), std::uint64_t(s.points), s.seed, std::uint64_t(s.knots)}) {
+  for (std::uint64_t value :
+       {std::uint64_t(s.count), std::uint64_t(s.points), s.seed, std::uint64_t(s.knots)}) {
     hash = hashCombine(hash, value);
   }
   for (double value : {s.tolerance, s.width, s.tipWidth, metersPerUnit}) hash = hashDouble(hash, value);
@@ -22,7 +26,8 @@ std::uint64_t strandsKey(const StrandSettings& s, std::uint64_t mesh, std::uint6
 }
 
 std::uint64_t meshBytes(const HairMesh& mesh) {
-  std::uint64_t bytes = mesh.vertices().size() * sizeof(HairVertex) + mesh.splits().size() * sizeof(EdgeSplit);
+  std::uint64_t bytes =
+      mesh.vertices().size() * sizeof(HairVertex) + mesh.splits().size() * sizeof(EdgeSplit);
   for (const Bundle& bundle : mesh.bundles()) bytes += sizeof(Bundle) + bundle.vertices.size() * 4;
   return bytes;
 }
@@ -32,7 +37,9 @@ std::uint64_t meshBytes(const PolygonMesh& mesh) {
          mesh.cornerUvs.size() * sizeof(Vec2);
 }
 
-std::string countText(std::size_t count, const char* what) { return std::to_string(count) + " " + what; }
+std::string countText(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what;
+}
 
 GrowOptions growOptions(const Scene& scene, const Surface* head) {
   const StrandSettings& s = scene.strands;
@@ -66,9 +73,12 @@ struct Evaluation::Impl {
   std::optional<std::uint64_t> strandsKey;
   GrowResult grown;
 
-  bool forced(const char* stage) const { return options.force.contains(stage) || options.force.contains("all"); }
+  bool forced(const char* stage) const {
+    return options.force.contains(stage) || options.force.contains("all");
+  }
 
-  StageReport& add(const char* stage, StageState state, std::string reason, double seconds = 0, std::uint64_t bytes = 0) {
+  StageReport& add(const char* stage, StageState state, std::string reason, double seconds = 0,
+                   std::uint64_t bytes = 0) {
     StageReport report;
     report.name = stage;
     report.state = state;
@@ -84,7 +94,9 @@ struct Evaluation::Impl {
   Status growStrands(const Scene& scene, const Context& context);
 };
 
-Evaluation::Evaluation(EvaluateOptions options) : impl_(std::make_unique<Impl>()) { impl_->options = std::move(options); }
+Evaluation::Evaluation(EvaluateOptions options) : impl_(std::make_unique<Impl>()) {
+  impl_->options = std::move(options);
+}
 Evaluation::~Evaluation() = default;
 Evaluation::Evaluation(Evaluation&&) noexcept = default;
 
@@ -100,8 +112,8 @@ Status Evaluation::Impl::loadHead(const Scene& scene, const Context& context) {
     return {};
   }
   if (path.empty()) {
-    return makeError(ErrorCode::NotFound, "the scene names no head; give it one or leave the head out", "head.path",
-                     scene.file.string());
+    return makeError(ErrorCode::NotFound, "the scene names no head; give it one or leave the head out",
+                     "head.path", scene.file.string());
   }
   const Stopwatch watch;
   context.report("reading the head", 0);
@@ -155,7 +167,8 @@ Status Evaluation::Impl::runPlace(const Scene& scene, const Context& context) {
   placed = std::move(mesh);
   placeKey = key;
   placedHash = meshHash(placed);
-  StageReport& report = add("place", StageState::Ran, "the hair mesh is new or moved", watch.seconds(), meshBytes(placed));
+  StageReport& report =
+      add("place", StageState::Ran, "the hair mesh is new or moved", watch.seconds(), meshBytes(placed));
   report.error = placeReport->error;
   report.notes.push_back(countText(placeReport->unknowns, "internal vertices, ") +
                          countText(std::size_t(placeReport->iterations), "iterations"));
@@ -176,14 +189,18 @@ Status Evaluation::Impl::growStrands(const Scene& scene, const Context& context)
   grown = {};
   COIF_ASSIGN(grown, grow(placed, growOptions(scene, head.get()), context));
   strandsKey = key;
-  StageReport& report =
-      add("strands", StageState::Ran, "mesh, head or settings are new", watch.seconds(), grown.strands.bytes());
+  StageReport& report = add("strands", StageState::Ran, "mesh, head or settings are new", watch.seconds(),
+                            grown.strands.bytes());
   report.error = grown.report.error;
   report.notes.push_back(countText(grown.strands.strandCount(), "strands, ") +
                          countText(grown.strands.pointCount(), "points"));
-  if (grown.report.negativeWeights) report.notes.push_back(countText(grown.report.negativeWeights, "strands have negative weights (concave root faces)"));
-  if (grown.report.barrenBundles) report.notes.push_back(countText(grown.report.barrenBundles, "bundles carry no strands"));
-  if (grown.report.zeroLength) report.notes.push_back(countText(grown.report.zeroLength, "strands of no length left out"));
+  if (grown.report.negativeWeights)
+    report.notes.push_back(
+        countText(grown.report.negativeWeights, "strands have negative weights (concave root faces)"));
+  if (grown.report.barrenBundles)
+    report.notes.push_back(countText(grown.report.barrenBundles, "bundles carry no strands"));
+  if (grown.report.zeroLength)
+    report.notes.push_back(countText(grown.report.zeroLength, "strands of no length left out"));
   return {};
 }
 
@@ -206,8 +223,8 @@ Result<const StrandSet*> Evaluation::strands(const Scene& scene, const Context& 
   return static_cast<const StrandSet*>(&impl_->grown.strands);
 }
 
-Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesystem::path& path, StrandExport what,
-                                         const Context& context) {
+Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesystem::path& path,
+                                         StrandExport what, const Context& context) {
   // A second file from the same call needs nothing rebuilt; ask quietly for what is already there.
   COIF_ASSIGN(const StrandSet* set, strands(scene, context));
   what.strands = set;
@@ -223,9 +240,17 @@ Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesyst
   return written;
 }
 
-const std::vector<StageReport>& Evaluation::reports() const { return impl_->reports; }
-void Evaluation::clearReports() { impl_->reports.clear(); }
-const GrowReport* Evaluation::growReport() const { return impl_->strandsKey ? &impl_->grown.report : nullptr; }
-const PlaceReport* Evaluation::placeReport() const { return impl_->placeReport ? &*impl_->placeReport : nullptr; }
+const std::vector<StageReport>& Evaluation::reports() const {
+  return impl_->reports;
+}
+void Evaluation::clearReports() {
+  impl_->reports.clear();
+}
+const GrowReport* Evaluation::growReport() const {
+  return impl_->strandsKey ? &impl_->grown.report : nullptr;
+}
+const PlaceReport* Evaluation::placeReport() const {
+  return impl_->placeReport ? &*impl_->placeReport : nullptr;
+}
 
 }  // namespace coif

@@ -23,8 +23,8 @@ std::string explainText(const std::vector<StageReport>& reports) {
   std::string out = "stage    state    seconds      bytes  why\n";
   for (const StageReport& report : reports) {
     char line[128];
-    std::snprintf(line, sizeof line, "%-8s %-8s %7.3f %10s  ", report.name.c_str(), name(report.state), report.seconds,
-                  report.bytes ? bytesText(report.bytes).c_str() : "-");
+    std::snprintf(line, sizeof line, "%-8s %-8s %7.3f %10s  ", report.name.c_str(), name(report.state),
+                  report.seconds, report.bytes ? bytesText(report.bytes).c_str() : "-");
     out += line + report.reason + "\n";
     const std::string indent(38, ' ');
     if (report.error.value >= 0) {
@@ -39,11 +39,14 @@ std::string explainText(const std::vector<StageReport>& reports) {
 std::string reportJson(const std::vector<StageReport>& reports) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
   for (const StageReport& report : reports) {
-    nlohmann::ordered_json stage = {{"stage", report.name},       {"state", name(report.state)},
-                                    {"because", report.reason},   {"seconds", report.seconds},
+    nlohmann::ordered_json stage = {{"stage", report.name},
+                                    {"state", name(report.state)},
+                                    {"because", report.reason},
+                                    {"seconds", report.seconds},
                                     {"bytes", report.bytes}};
     if (report.error.value >= 0) {
-      stage["error"] = {{"value", report.error.value}, {"unit", report.error.unit}, {"method", report.error.method}};
+      stage["error"] = {
+          {"value", report.error.value}, {"unit", report.error.unit}, {"method", report.error.method}};
     }
     stage["notes"] = report.notes;
     stages.push_back(std::move(stage));

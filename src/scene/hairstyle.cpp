@@ -29,7 +29,8 @@ constexpr auto kNames = [] {
 }();
 
 const Entry* find(std::string_view style) {
-  const auto it = std::find_if(kStyles.begin(), kStyles.end(), [&](const Entry& entry) { return entry.name == style; });
+  const auto it =
+      std::find_if(kStyles.begin(), kStyles.end(), [&](const Entry& entry) { return entry.name == style; });
   return it == kStyles.end() ? nullptr : &*it;
 }
 
@@ -49,14 +50,17 @@ styles::HeadSpace spaceOf(const Cage& cage) {
 
 }  // namespace
 
-std::span<const std::string_view> hairstyleNames() { return kNames; }
+std::span<const std::string_view> hairstyleNames() {
+  return kNames;
+}
 
 std::uint32_t suggestedCageCount(std::string_view style) {
   const Entry* entry = find(style);
   return entry ? entry->cageCount : 200;
 }
 
-Result<Hairstyle> modelHairstyle(std::string_view style, const Cage& cage, const Surface& head, const Context& context) {
+Result<Hairstyle> modelHairstyle(std::string_view style, const Cage& cage, const Surface& head,
+                                 const Context& context) {
   const Entry* entry = find(style);
   if (!entry) {
     return makeError(ErrorCode::InvalidArgument, "there is no hairstyle '" + std::string(style) +

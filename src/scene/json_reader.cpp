@@ -58,7 +58,8 @@ double JsonReader::number(const char* key, double fallback, double lo, double hi
   return value;
 }
 
-std::uint64_t JsonReader::integer(const char* key, std::uint64_t fallback, std::uint64_t lo, std::uint64_t hi) {
+std::uint64_t JsonReader::integer(const char* key, std::uint64_t fallback, std::uint64_t lo,
+                                  std::uint64_t hi) {
   const nlohmann::json* found = find(key, false);
   if (!found) return fallback;
   if (!found->is_number_unsigned() || found->get<std::uint64_t>() < lo || found->get<std::uint64_t>() > hi) {
@@ -98,9 +99,11 @@ std::vector<std::string> JsonReader::texts(const char* key) {
 std::vector<std::uint32_t> JsonReader::integers(const char* key) {
   const nlohmann::json* found = find(key, true);
   if (!found) return {};
-  const auto values = found->is_string() ? decodeIntegers(found->get_ref<const std::string&>()) : std::nullopt;
-  if (!values) return fail(key, "an array of whole numbers (\"u8:\", \"u16:\" or \"u32:\" and base64) is wanted here"),
-                      std::vector<std::uint32_t>{};
+  const auto values =
+      found->is_string() ? decodeIntegers(found->get_ref<const std::string&>()) : std::nullopt;
+  if (!values)
+    return fail(key, "an array of whole numbers (\"u8:\", \"u16:\" or \"u32:\" and base64) is wanted here"),
+           std::vector<std::uint32_t>{};
   return *values;
 }
 
@@ -108,7 +111,8 @@ std::vector<double> JsonReader::doubles(const char* key) {
   const nlohmann::json* found = find(key, true);
   if (!found) return {};
   const auto values = found->is_string() ? decodeDoubles(found->get_ref<const std::string&>()) : std::nullopt;
-  if (!values) return fail(key, "an array of numbers (\"f64:\" and base64) is wanted here"), std::vector<double>{};
+  if (!values)
+    return fail(key, "an array of numbers (\"f64:\" and base64) is wanted here"), std::vector<double>{};
   for (std::size_t i = 0; i < values->size(); ++i) {
     if (!std::isfinite((*values)[i])) {
       return fail(key, "value " + std::to_string(i) + " is not finite"), std::vector<double>{};

@@ -1,4 +1,5 @@
-// The .coif file: JSON with typed arrays. Parents and layers of vertices follow from the bundles and are not stored.
+// The .coif file: JSON with typed arrays. Parents and layers of vertices follow from the bundles and are not
+// stored.
 #include <nlohmann/json.hpp>
 
 #include "coif/io/safe_file.h"
@@ -53,7 +54,9 @@ ordered_json meshJson(const HairMesh& mesh) {
   return out;
 }
 
-std::string numberText(std::uint64_t number) { return std::to_string(number); }
+std::string numberText(std::uint64_t number) {
+  return std::to_string(number);
+}
 
 Result<std::vector<HairVertex>> readVertices(JsonReader reader) {
   const auto ids = reader.integers("ids");
@@ -97,8 +100,9 @@ Result<std::vector<Bundle>> readBundles(JsonReader reader, std::size_t vertexCou
   for (std::size_t j = 0; j < ids.size(); ++j) {
     const std::uint64_t length = (std::uint64_t(heights[j]) + 1) * corners[j];
     if (corners[j] < 3 || cursor + length > vertices.size()) {
-      reader.fail("vertices", "bundle " + numberText(j) + " has " + numberText(corners[j]) + " corners and height " +
-                                  numberText(heights[j]) + ", which the array does not hold");
+      reader.fail("vertices", "bundle " + numberText(j) + " has " + numberText(corners[j]) +
+                                  " corners and height " + numberText(heights[j]) +
+                                  ", which the array does not hold");
       return reader.status().error();
     }
     bundles[j].id = BundleId(ids[j]);
@@ -115,7 +119,8 @@ Result<std::vector<Bundle>> readBundles(JsonReader reader, std::size_t vertexCou
   return bundles;
 }
 
-/// A vertex lies on one layer and has one parent: both follow from the bundles, or the file contradicts itself.
+/// A vertex lies on one layer and has one parent: both follow from the bundles, or the file contradicts
+/// itself.
 Status deriveParents(std::vector<HairVertex>& vertices, const std::vector<Bundle>& bundles) {
   std::vector<std::uint8_t> seen(vertices.size(), 0);
   for (const Bundle& bundle : bundles) {
@@ -126,7 +131,8 @@ Status deriveParents(std::vector<HairVertex>& vertices, const std::vector<Bundle
         HairVertex& vertex = vertices[index];
         if (seen[index] && (vertex.layer != layer || vertex.parent != parent)) {
           return makeError(ErrorCode::Malformed,
-                           "vertex " + numberText(index) + " would have two parents or lie on two layers (bundle " +
+                           "vertex " + numberText(index) +
+                               " would have two parents or lie on two layers (bundle " +
                                numberText(std::uint32_t(bundle.id)) + ", layer " + numberText(layer) + ")",
                            "hairMesh.bundles.vertices");
         }
@@ -153,8 +159,8 @@ Result<HairMesh> readMesh(JsonReader reader) {
   for (std::size_t i = 0; i < splits.size(); ++i) {
     splits[i] = {splitValues[3 * i], splitValues[3 * i + 1], splitValues[3 * i + 2]};
   }
-  auto mesh = HairMesh::fromParts(std::move(vertices), std::move(bundles), std::move(splits), std::move(groupNames),
-                                  nextVertexId, nextBundleId);
+  auto mesh = HairMesh::fromParts(std::move(vertices), std::move(bundles), std::move(splits),
+                                  std::move(groupNames), nextVertexId, nextBundleId);
   if (mesh.ok()) return mesh;
   Error error = mesh.error();
   error.code = ErrorCode::Malformed;
@@ -230,9 +236,9 @@ std::string sceneText(const Scene& scene) {
   out["upAxis"] = scene.upAxis == UpAxis::Z ? "Z" : "Y";
   out["head"] = {{"path", scene.head.path.generic_string()}, {"contentHash", scene.head.contentHash}};
   const StrandSettings& s = scene.strands;
-  out["strands"] = {{"count", s.count},   {"points", s.points}, {"tolerance", s.tolerance},
-                    {"seed", s.seed},     {"width", s.width},   {"tipWidth", s.tipWidth},
-                    {"knots", kKnotNames[int(s.knots)]}};
+  out["strands"] = {
+      {"count", s.count}, {"points", s.points},     {"tolerance", s.tolerance},         {"seed", s.seed},
+      {"width", s.width}, {"tipWidth", s.tipWidth}, {"knots", kKnotNames[int(s.knots)]}};
   const Vec3f& c = scene.look.hairColor;
   out["look"] = {{"azimuth", scene.look.azimuthDeg},
                  {"elevation", scene.look.elevationDeg},
@@ -245,10 +251,11 @@ std::string sceneText(const Scene& scene) {
 Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path) {
   nlohmann::json json;
   try {
-    json = nlohmann::json::parse(text.begin(), text.end(), [](int depth, nlohmann::json::parse_event_t, auto&) {
-      if (depth > kMaxDepth) throw std::runtime_error("the JSON is nested deeper than any Coif scene");
-      return true;
-    });
+    json =
+        nlohmann::json::parse(text.begin(), text.end(), [](int depth, nlohmann::json::parse_event_t, auto&) {
+          if (depth > kMaxDepth) throw std::runtime_error("the JSON is nested deeper than any Coif scene");
+          return true;
+        });
   } catch (const nlohmann::json::parse_error& error) {
     return makeError(ErrorCode::Malformed, "this is not valid JSON (is the file cut off?)",
                      "byte " + numberText(error.byte), path.string());

@@ -78,7 +78,9 @@ std::string encodeIntegers(std::span<const std::uint32_t> values) {
   return encodeAs<std::uint32_t>("u32:", values);
 }
 
-std::string encodeDoubles(std::span<const double> values) { return encodeAs<double>("f64:", values); }
+std::string encodeDoubles(std::span<const double> values) {
+  return encodeAs<double>("f64:", values);
+}
 
 std::optional<std::vector<std::uint32_t>> decodeIntegers(std::string_view text) {
   if (text.starts_with("u8:")) return decodeAs<std::uint8_t, std::uint32_t>(text.substr(3));

@@ -12,7 +12,8 @@ namespace coif {
 namespace {
 
 Result<int> half(int x) {
-  if (x % 2 != 0) return makeError(ErrorCode::InvalidArgument, "the number is odd", "number " + std::to_string(x));
+  if (x % 2 != 0)
+    return makeError(ErrorCode::InvalidArgument, "the number is odd", "number " + std::to_string(x));
   return x / 2;
 }
 

@@ -36,7 +36,8 @@ TEST(Evaluation, RunsOnlyWhatItsInputsChanged) {
 
   evaluation.clearReports();
   ASSERT_TRUE(evaluation.strands(scene).ok());
-  for (const char* stage : {"check", "place", "strands"}) EXPECT_EQ(lastState(evaluation, stage), StageState::Reused);
+  for (const char* stage : {"check", "place", "strands"})
+    EXPECT_EQ(lastState(evaluation, stage), StageState::Reused);
 
   evaluation.clearReports();
   scene.strands.count = 101;

@@ -29,9 +29,11 @@ Scene sampleScene() {
   ExtrudeOptions up;
   up.direction = Vec3(0.1, 0, 1);
   for (int layer = 0; layer < 3; ++layer) {
-    if (!extrudeFaces(scene.hairMesh, all, up).ok()) throw std::runtime_error("the sample could not be extruded");
+    if (!extrudeFaces(scene.hairMesh, all, up).ok())
+      throw std::runtime_error("the sample could not be extruded");
   }
-  if (!separateEdge(scene.hairMesh, {all[0], 2, 1}).ok()) throw std::runtime_error("the sample could not be parted");
+  if (!separateEdge(scene.hairMesh, {all[0], 2, 1}).ok())
+    throw std::runtime_error("the sample could not be parted");
   scene.hairMesh.setGroup(1, scene.hairMesh.addGroup("fringe"));
   scene.hairMesh.setPinned(scene.hairMesh.bundles()[0].face(1)[2], true);
   return scene;

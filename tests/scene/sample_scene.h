@@ -1,4 +1,5 @@
-// A small scene with every feature of the document: two layers, a separated edge, a pinned vertex, two groups.
+// A small scene with every feature of the document: two layers, a separated edge, a pinned vertex, two
+// groups.
 #pragma once
 
 #include "coif/scene/scene.h"

@@ -57,7 +57,8 @@ TEST(SceneFile, HeadPathFollowsTheFile) {
 }
 
 /// Sets one entry of the sample scene and expects a refusal that names `place`.
-void expectRefused(const std::function<void(json&)>& spoil, const std::string& place, ErrorCode code = ErrorCode::Malformed) {
+void expectRefused(const std::function<void(json&)>& spoil, const std::string& place,
+                   ErrorCode code = ErrorCode::Malformed) {
   json document = json::parse(sceneText(test::sampleScene()));
   spoil(document);
   const auto result = parseScene(document.dump(), "spoilt.coif");
@@ -85,12 +86,21 @@ TEST(SceneFile, RefusesWhatBreaksTheFormat) {
 }
 
 TEST(SceneFile, RefusesWhatBreaksTheHairMesh) {
-  const auto integers = [](const std::vector<std::uint32_t>& values) { return scene::encodeIntegers(values); };
-  expectRefused([](json& d) { d["hairMesh"]["vertices"]["positions"] = "f64:AAAA"; }, "hairMesh.vertices.positions");
-  expectRefused([](json& d) { d["hairMesh"]["vertices"]["positions"] = {1, 2, 3}; }, "hairMesh.vertices.positions");
-  expectRefused([&](json& d) { d["hairMesh"]["vertices"]["pinned"] = integers({100000}); }, "hairMesh.vertices.pinned");
+  const auto integers = [](const std::vector<std::uint32_t>& values) {
+    return scene::encodeIntegers(values);
+  };
+  expectRefused([](json& d) { d["hairMesh"]["vertices"]["positions"] = "f64:AAAA"; },
+                "hairMesh.vertices.positions");
+  expectRefused(
+      [](json& d) {
+        d["hairMesh"]["vertices"]["positions"] = {1, 2, 3};
+      },
+      "hairMesh.vertices.positions");
+  expectRefused([&](json& d) { d["hairMesh"]["vertices"]["pinned"] = integers({100000}); },
+                "hairMesh.vertices.pinned");
   expectRefused([&](json& d) { d["hairMesh"]["splits"] = integers({1, 2}); }, "hairMesh.splits");
-  expectRefused([&](json& d) { d["hairMesh"]["bundles"]["heights"] = integers({4294967295u}); }, "hairMesh.bundles");
+  expectRefused([&](json& d) { d["hairMesh"]["bundles"]["heights"] = integers({4294967295u}); },
+                "hairMesh.bundles");
   const Scene sample = test::sampleScene();
   const auto spoilVertices = [&](const std::function<void(std::vector<std::uint32_t>&)>& spoil) {
     return [&sample, &integers, spoil](json& d) {

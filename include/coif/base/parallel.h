@@ -14,7 +14,8 @@ namespace coif {
 void parallelFor(const Context& context, std::size_t count, std::size_t grain,
                  const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Σ partial(begin, end) over fixed chunks, added pairwise in index order: the same bits for any thread count.
+/// Σ partial(begin, end) over fixed chunks, added pairwise in index order: the same bits for any thread
+/// count.
 double parallelSum(const Context& context, std::size_t count, std::size_t grain,
                    const std::function<double(std::size_t begin, std::size_t end)>& partial);
 

@@ -1,4 +1,5 @@
-// Counter-based random numbers: a value is a pure function of (key, counter), so order and threads do not matter.
+// Counter-based random numbers: a value is a pure function of (key, counter), so order and threads do not
+// matter.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,8 @@ constexpr std::uint64_t hashCombine(std::uint64_t key, std::uint64_t value) {
 class CounterRandom {
  public:
   constexpr explicit CounterRandom(std::uint64_t key) : key_(key) {}
-  constexpr CounterRandom(std::uint64_t seed, std::uint64_t stream) : key_(hashCombine(mix64(seed + 1), stream)) {}
+  constexpr CounterRandom(std::uint64_t seed, std::uint64_t stream)
+      : key_(hashCombine(mix64(seed + 1), stream)) {}
 
   constexpr std::uint64_t bits(std::uint64_t counter) const { return hashCombine(key_, counter); }
   /// Uniform in [0, 1), 53 bits.

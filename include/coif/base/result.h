@@ -91,17 +91,18 @@ inline Error inFile(Error error, const std::string& file) {
 }  // namespace coif
 
 /// Returns the error of `expression` from the enclosing function, or goes on.
-#define COIF_TRY(expression)                                  \
-  do {                                                        \
-    if (auto coifStatus = (expression); !coifStatus.ok()) {   \
-      return coifStatus.error();                              \
-    }                                                         \
+#define COIF_TRY(expression)                                \
+  do {                                                      \
+    if (auto coifStatus = (expression); !coifStatus.ok()) { \
+      return coifStatus.error();                            \
+    }                                                       \
   } while (false)
 
 #define COIF_CONCAT_(a, b) a##b
 #define COIF_CONCAT(a, b) COIF_CONCAT_(a, b)
 /// Binds `declaration` to the value of a Result, or returns its error: COIF_ASSIGN(auto mesh, load(path));
-#define COIF_ASSIGN(declaration, expression) COIF_ASSIGN_(declaration, expression, COIF_CONCAT(coifResult, __LINE__))
+#define COIF_ASSIGN(declaration, expression) \
+  COIF_ASSIGN_(declaration, expression, COIF_CONCAT(coifResult, __LINE__))
 #define COIF_ASSIGN_(declaration, expression, result) \
   auto result = (expression);                         \
   if (!result.ok()) return result.error();            \

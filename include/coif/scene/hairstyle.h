@@ -20,8 +20,9 @@ std::span<const std::string_view> hairstyleNames();
 std::uint32_t suggestedCageCount(std::string_view style);
 
 struct HairstyleReport {
-  std::size_t pinned = 0;      ///< internal vertices that had to be pinned to keep the shape or stay off the head
-  double worstDeviation = 0;   ///< greatest distance of an unpinned internal vertex from its guide / head height
+  std::size_t pinned = 0;  ///< internal vertices that had to be pinned to keep the shape or stay off the head
+  double worstDeviation =
+      0;  ///< greatest distance of an unpinned internal vertex from its guide / head height
 };
 
 struct Hairstyle {
@@ -29,9 +30,9 @@ struct Hairstyle {
   HairstyleReport report;
 };
 
-/// Models `style` on the cage: extrudes layers, separates the parting, lays the outer vertices along combed guide
-/// curves, places the inner ones. The face stays free and every vertex outside the head.
-/// Errors: InvalidArgument for an unknown style; Degenerate when the cage cannot carry it.
+/// Models `style` on the cage: extrudes layers, separates the parting, lays the outer vertices along combed
+/// guide curves, places the inner ones. The face stays free and every vertex outside the head. Errors:
+/// InvalidArgument for an unknown style; Degenerate when the cage cannot carry it.
 Result<Hairstyle> modelHairstyle(std::string_view style, const Cage& cage, const Surface& head,
                                  const Context& context = {});
 

@@ -20,32 +20,33 @@ struct HeadReference {
 struct StrandSettings {
   std::size_t count = 20000;
   std::uint32_t points = 32;
-  double tolerance = 0;   ///< > 0: adaptive sampling, chord error in scene units
+  double tolerance = 0;  ///< > 0: adaptive sampling, chord error in scene units
   std::uint64_t seed = 1;
   Knots knots = Knots::Uniform;
-  double width = 0;       ///< root diameter in scene units; 0: 0.08 mm
-  double tipWidth = 0.25; ///< tip diameter / root diameter
+  double width = 0;        ///< root diameter in scene units; 0: 0.08 mm
+  double tipWidth = 0.25;  ///< tip diameter / root diameter
   bool operator==(const StrandSettings&) const = default;
 };
 
 /// How `coif render` looks at it when not told otherwise.
 struct LookSettings {
-  double azimuthDeg = 30, elevationDeg = 8;           ///< of the camera; 0, 0 looks at the face
-  Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);       ///< linear RGB reflectance
+  double azimuthDeg = 30, elevationDeg = 8;      ///< of the camera; 0, 0 looks at the face
+  Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);  ///< linear RGB reflectance
 };
 
 struct Scene {
   static constexpr int kVersion = 1;  ///< of the file format
 
-  std::string name;    ///< of the hairstyle
+  std::string name;  ///< of the hairstyle
   HeadReference head;
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;
   HairMesh hairMesh;
-  std::uint64_t placedHash = 0;  ///< meshHash() right after the last placement; equal now: nothing moved since
+  std::uint64_t placedHash =
+      0;  ///< meshHash() right after the last placement; equal now: nothing moved since
   StrandSettings strands;
   LookSettings look;
-  std::filesystem::path file;    ///< where it was loaded from or saved to; not stored
+  std::filesystem::path file;  ///< where it was loaded from or saved to; not stored
 
   std::filesystem::path headPath() const;  ///< absolute, or relative to the working directory
 };
@@ -53,8 +54,9 @@ struct Scene {
 /// 64-bit fingerprint of the mesh's topology and positions.
 std::uint64_t meshHash(const HairMesh& mesh);
 
-/// Reads a .coif of this or an older version. Every array is checked before use; the hair mesh must keep all its
-/// invariants. Errors: NotFound, Unreadable, Malformed (with the JSON path as the place), Unsupported (newer version).
+/// Reads a .coif of this or an older version. Every array is checked before use; the hair mesh must keep all
+/// its invariants. Errors: NotFound, Unreadable, Malformed (with the JSON path as the place), Unsupported
+/// (newer version).
 Result<Scene> loadScene(const std::filesystem::path& path);
 Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
 

@@ -8,11 +8,11 @@ namespace {
 
 /// The knot: hair gathers in a ring at the back of the head and is wound around a ball behind it.
 struct Knot {
-  Vec3 tie = Vec3(0, 0.30, -0.52);                   // head space, moved onto the head
-  Vec3 axis = Vec3(0, 0.42, -0.91).normalized();     // out of the head
-  double ring = 0.075;                               // radius of the gathered hair
-  double ball = 0.155;                               // radius of the bun
-  double turns = 0.7;                                // of the winding
+  Vec3 tie = Vec3(0, 0.30, -0.52);                // head space, moved onto the head
+  Vec3 axis = Vec3(0, 0.42, -0.91).normalized();  // out of the head
+  double ring = 0.075;                            // radius of the gathered hair
+  double ball = 0.155;                            // radius of the bun
+  double turns = 0.7;                             // of the winding
 };
 
 Guide towardsTie(const StyleInput& input, const Root& root, const Vec3& port) {
@@ -54,7 +54,8 @@ Result<Hairstyle> bun(const StyleInput& input) {
   constexpr std::uint32_t kScalpLayers = 5, kKnotLayers = 8;
   COIF_TRY(extrudeLayers(mesh, all, kScalpLayers + kKnotLayers));
   Knot knot;
-  knot.tie = input.space.fromScene(input.head.nearest(input.space.toScene(knot.tie)).position) + 0.012 * knot.axis;
+  knot.tie =
+      input.space.fromScene(input.head.nearest(input.space.toScene(knot.tie)).position) + 0.012 * knot.axis;
   const Vec3 right = knot.axis.cross(Vec3(0, 1, 0)).normalized(), up = right.cross(knot.axis);
   const auto guide = [&](const Root& root) {
     // Where on the ring it arrives: from its own side of the head, near roots inside, far ones outside.
@@ -74,7 +75,8 @@ Result<Hairstyle> bun(const StyleInput& input) {
   const auto targets = targetsOf(mesh, input, std::vector<int>(mesh.vertices().size(), 0), guide);
   SettleOptions options;
   options.tolerance = 0.012;
-  COIF_ASSIGN(const HairstyleReport report, settle(mesh, targets, input.head, input.space, options, input.context));
+  COIF_ASSIGN(const HairstyleReport report,
+              settle(mesh, targets, input.head, input.space, options, input.context));
   return Hairstyle{std::move(mesh), report};
 }
 

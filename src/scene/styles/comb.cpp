@@ -21,7 +21,8 @@ double clearanceOf(const Surface& head, const HeadSpace& space, const Vec3& poin
   return (inside ? -foot.distance : foot.distance) / space.height;
 }
 
-Guide comb(const Surface& head, const HeadSpace& space, const Vec3& root, const Vec3& normal, const CombOptions& options) {
+Guide comb(const Surface& head, const HeadSpace& space, const Vec3& root, const Vec3& normal,
+           const CombOptions& options) {
   Guide guide{root};
   Vec3 point = root;
   Vec3 heading = options.direction(root, 0).normalized();

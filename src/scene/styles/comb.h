@@ -10,9 +10,10 @@ namespace coif::styles {
 
 /// Coordinates of a head: origin at its middle, lengths in head heights (chin to crown = 1).
 struct HeadSpace {
-  Vec3 origin = Vec3::Zero();               ///< between the ears, half way from chin to crown
-  Mat3 axes = Mat3::Identity();             ///< columns: right (the viewer's, facing the face: the head's left), up, forward
-  double height = 1;                        ///< scene units a head height
+  Vec3 origin = Vec3::Zero();  ///< between the ears, half way from chin to crown
+  Mat3 axes =
+      Mat3::Identity();  ///< columns: right (the viewer's, facing the face: the head's left), up, forward
+  double height = 1;     ///< scene units a head height
 
   Vec3 fromScene(const Vec3& p) const { return axes.transpose() * (p - origin) / height; }
   Vec3 toScene(const Vec3& p) const { return origin + height * (axes * p); }
@@ -24,10 +25,10 @@ struct HeadSpace {
 using Guide = std::vector<Vec3>;
 
 struct CombOptions {
-  double length = 1;       ///< head heights
-  double step = 0.015;     ///< head heights
-  double turn = 0.35;      ///< share of the wanted direction taken up each step: low is stiff
-  double rise = 0.25;      ///< how far the first direction leans from the comb towards the scalp normal
+  double length = 1;    ///< head heights
+  double step = 0.015;  ///< head heights
+  double turn = 0.35;   ///< share of the wanted direction taken up each step: low is stiff
+  double rise = 0.25;   ///< how far the first direction leans from the comb towards the scalp normal
   /// Wanted direction at a point after arc length s; need not be unit.
   std::function<Vec3(const Vec3& point, double s)> direction;
   /// Least distance to the head after arc length s.
@@ -39,7 +40,8 @@ struct CombOptions {
 };
 
 /// Combs from `root` (head space, on the head) whose outward normal is `normal`.
-Guide comb(const Surface& head, const HeadSpace& space, const Vec3& root, const Vec3& normal, const CombOptions& options);
+Guide comb(const Surface& head, const HeadSpace& space, const Vec3& root, const Vec3& normal,
+           const CombOptions& options);
 
 /// `count` points evenly spaced by arc length, ends included.
 Guide resample(const Guide& guide, std::size_t count);

@@ -7,8 +7,8 @@ namespace coif::styles {
 
 namespace {
 
-/// Horizontal direction away from the parting line (u = 0, w >= whorl), turning backwards towards its end so that the
-/// two sides meet the hair behind in one sweep. `side` decides on the line itself.
+/// Horizontal direction away from the parting line (u = 0, w >= whorl), turning backwards towards its end so
+/// that the two sides meet the hair behind in one sweep. `side` decides on the line itself.
 Vec3 awayFromParting(const Vec3& point, double whorl, int side) {
   constexpr double kTurning = 0.22;  // head heights before the parting's end
   Vec3 away(point.x(), 0, std::min(0.0, point.z() - whorl));
@@ -21,10 +21,12 @@ Vec3 awayFromParting(const Vec3& point, double whorl, int side) {
   return away.normalized();
 }
 
-/// Keeps hair beside the face: in front of the ears and below the forehead it may not come closer to the middle.
+/// Keeps hair beside the face: in front of the ears and below the forehead it may not come closer to the
+/// middle.
 Vec3 keepOffFace(const Vec3& point) {
   constexpr double kFront = 0.14, kForehead = 0.22, kHalfWidth = 0.27;
-  const double depth = smoothStep(kFront, kFront + 0.12, point.z()) * smoothStep(kForehead, kForehead - 0.18, point.y());
+  const double depth =
+      smoothStep(kFront, kFront + 0.12, point.z()) * smoothStep(kForehead, kForehead - 0.18, point.y());
   const double least = kHalfWidth * depth;
   if (std::abs(point.x()) >= least) return point;
   return Vec3(std::copysign(least, point.x()), point.y(), point.z());
@@ -52,7 +54,8 @@ CombOptions combing(const FlowStyle& style, const Root& root) {
   };
   const double cover = style.close + style.thickness * std::pow(root.rank, 1.3);
   out.clearance = [=](double s) { return cover * smoothStep(0, 0.16, s) + 0.004 * smoothStep(0, 0.02, s); };
-  if (style.cut) out.stop = [cut = style.cut](const Vec3& point, double s) { return s > 0.06 && point.y() <= cut(point); };
+  if (style.cut)
+    out.stop = [cut = style.cut](const Vec3& point, double s) { return s > 0.06 && point.y() <= cut(point); };
   out.constrain = keepOffFace;
   return out;
 }
@@ -64,20 +67,18 @@ Result<Hairstyle> flow(const StyleInput& input, const FlowStyle& style) {
   std::vector<BundleId> all;
   for (const Bundle& bundle : mesh.bundles()) all.push_back(bundle.id);
   COIF_TRY(extrudeLayers(mesh, all, style.layers));
-  if (style.parted) {
-    COIF_ASSIGN(const std::size_t edges, separateParting(mesh, input, style.whorl));
-    if (edges == 0) {
-      return makeError(ErrorCode::Degenerate, "the cage has no line of vertices along the middle to part the hair on");
-    }
+  if (style.parted && separateParting(mesh, input, style.whorl) == 0) {
+    return makeError(ErrorCode::Degenerate,
+                     "no edges of the cage run between the left and the right of the head to part "
+                     "the hair on; choose a region on both sides");
   }
-  const auto sides = sidesOf(mesh, [&](std::uint32_t bundle) {
-    double sum = 0;
-    for (std::uint32_t v : mesh.bundles()[bundle].face(0)) sum += input.space.fromScene(mesh.position(v)).x();
-    return sum < 0;
+  const auto sides =
+      sidesOf(mesh, [&](std::uint32_t bundle) { return onLeft(mesh, input, mesh.bundles()[bundle]); });
+  const auto targets = targetsOf(mesh, input, sides, [&](const Root& root) {
+    return comb(input.head, input.space, root.point, root.normal, combing(style, root));
   });
-  const auto targets =
-      targetsOf(mesh, input, sides, [&](const Root& root) { return comb(input.head, input.space, root.point, root.normal, combing(style, root)); });
-  COIF_ASSIGN(const HairstyleReport report, settle(mesh, targets, input.head, input.space, {}, input.context));
+  COIF_ASSIGN(const HairstyleReport report,
+              settle(mesh, targets, input.head, input.space, {}, input.context));
   return Hairstyle{std::move(mesh), report};
 }
 

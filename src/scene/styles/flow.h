@@ -15,11 +15,13 @@ struct FlowStyle {
   double length = 1.2;      ///< at most, head heights
   double thickness = 0.05;  ///< of the whole cover, head heights: the highest roots lie this far out
   double close = 0.012;     ///< the lowest roots lie this far out
-  std::function<double(const Vec3&)> cut;  ///< height v at which hair at this point ends; empty: by length alone
-  double tuck = 0;          ///< pull towards the neck over the last `tuckSpan` above the cut
+  std::function<double(const Vec3&)>
+      cut;          ///< height v at which hair at this point ends; empty: by length alone
+  double tuck = 0;  ///< pull towards the neck over the last `tuckSpan` above the cut
   double tuckSpan = 0.15;
-  double shoulders = 0;     ///< pull off the shoulders: forwards for roots before `divide`, backwards for the others
-  double divide = 0.18;     ///< w
+  double shoulders =
+      0;  ///< pull off the shoulders: forwards for roots before `divide`, backwards for the others
+  double divide = 0.18;  ///< w
 };
 
 Result<Hairstyle> flow(const StyleInput& input, const FlowStyle& style);

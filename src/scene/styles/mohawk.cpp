@@ -22,7 +22,8 @@ bool inStrip(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle
 
 /// The fan: straight up at the root, leaning back a little, thinning to a crest.
 Guide crest(const Root& root) {
-  const double along = std::clamp((root.point.z() + 0.45) / 0.9, 0.0, 1.0);  // 0 at the nape, 1 at the forehead
+  const double along =
+      std::clamp((root.point.z() + 0.45) / 0.9, 0.0, 1.0);  // 0 at the nape, 1 at the forehead
   const double height = 0.16 + 0.24 * std::sin(M_PI * (0.15 + 0.75 * along));
   Vec3 up = root.normal;
   up.x() = 0;
@@ -52,7 +53,8 @@ Result<Hairstyle> mohawk(const StyleInput& input) {
   for (const Bundle& bundle : mesh.bundles()) {
     (inStrip(mesh, input, bundle) ? strip : sides).push_back(bundle.id);
   }
-  if (strip.empty()) return makeError(ErrorCode::Degenerate, "the cage has no quads along the middle of the head");
+  if (strip.empty())
+    return makeError(ErrorCode::Degenerate, "the cage has no quads along the middle of the head");
   COIF_TRY(extrudeLayers(mesh, strip, 5));
   if (!sides.empty()) COIF_TRY(extrudeLayers(mesh, sides, 1));
   // A root on the strip's border stands and lies at once: its columns are told apart by their height.
@@ -60,9 +62,10 @@ Result<Hairstyle> mohawk(const StyleInput& input) {
   for (const Bundle& bundle : mesh.bundles()) {
     for (std::uint32_t v : bundle.vertices) kinds[v] = bundle.height() > 1 ? 1 : kinds[v];
   }
-  const auto targets =
-      targetsOf(mesh, input, kinds, [](const Root& root) { return root.side == 1 ? crest(root) : stubble(root); });
-  COIF_ASSIGN(const HairstyleReport report, settle(mesh, targets, input.head, input.space, {}, input.context));
+  const auto targets = targetsOf(
+      mesh, input, kinds, [](const Root& root) { return root.side == 1 ? crest(root) : stubble(root); });
+  COIF_ASSIGN(const HairstyleReport report,
+              settle(mesh, targets, input.head, input.space, {}, input.context));
   return Hairstyle{std::move(mesh), report};
 }
 

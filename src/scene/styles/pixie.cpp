@@ -24,12 +24,17 @@ Result<Hairstyle> pixie(const StyleInput& input) {
       const double fringe = smoothStep(0.1, 0.4, root.point.z());
       return Vec3(radial.normalized() + Vec3(0.75 * fringe, -0.9 - 0.6 * (1 - top), 0.25 * (1 - fringe)));
     };
-    options.clearance = [=](double s) { return (0.010 + 0.026 * top) * smoothStep(0, 0.10, s) + 0.004 * smoothStep(0, 0.02, s); };
-    options.stop = [=](const Vec3& point, double s) { return s > 0.05 && point.z() > 0.2 && point.y() < 0.17; };
+    options.clearance = [=](double s) {
+      return (0.010 + 0.026 * top) * smoothStep(0, 0.10, s) + 0.004 * smoothStep(0, 0.02, s);
+    };
+    options.stop = [=](const Vec3& point, double s) {
+      return s > 0.05 && point.z() > 0.2 && point.y() < 0.17;
+    };
     return comb(input.head, input.space, root.point, root.normal, options);
   };
   const auto targets = targetsOf(mesh, input, std::vector<int>(mesh.vertices().size(), 0), guide);
-  COIF_ASSIGN(const HairstyleReport report, settle(mesh, targets, input.head, input.space, {}, input.context));
+  COIF_ASSIGN(const HairstyleReport report,
+              settle(mesh, targets, input.head, input.space, {}, input.context));
   return Hairstyle{std::move(mesh), report};
 }
 

@@ -16,8 +16,9 @@ struct Fault {
 
 constexpr int kRounds = 12;
 
-std::vector<Fault> faultsOf(const HairMesh& mesh, const std::vector<std::uint8_t>& external, const std::vector<Vec3>& targets,
-                            const Surface& head, const HeadSpace& space, const SettleOptions& options, const Context& context) {
+std::vector<Fault> faultsOf(const HairMesh& mesh, const std::vector<std::uint8_t>& external,
+                            const std::vector<Vec3>& targets, const Surface& head, const HeadSpace& space,
+                            const SettleOptions& options, const Context& context) {
   std::vector<double> size(mesh.vertices().size(), 0);
   parallelFor(context, size.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -26,14 +27,16 @@ std::vector<Fault> faultsOf(const HairMesh& mesh, const std::vector<std::uint8_t
       size[v] = (position - targets[v]).norm() / space.height / options.tolerance;
       Vec3 away;
       const double distance = clearanceOf(head, space, space.fromScene(position), away);
-      if (distance < options.clearance) size[v] = std::max(size[v], 2 + (options.clearance - distance) / options.tolerance);
+      if (distance < options.clearance)
+        size[v] = std::max(size[v], 2 + (options.clearance - distance) / options.tolerance);
     }
   });
   std::vector<Fault> faults;
   for (std::uint32_t v = 0; v < size.size(); ++v) {
     if (size[v] > 1) faults.push_back({size[v], v});
   }
-  std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) { return a.size > b.size; });
+  std::stable_sort(faults.begin(), faults.end(),
+                   [](const Fault& a, const Fault& b) { return a.size > b.size; });
   return faults;
 }
 
@@ -62,7 +65,8 @@ Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets,
   const auto external = externalVertices(mesh);
   for (std::uint32_t v = 0; v < targets.size(); ++v) {
     if (!external[v]) {
-      report.worstDeviation = std::max(report.worstDeviation, (mesh.position(v) - targets[v]).norm() / space.height);
+      report.worstDeviation =
+          std::max(report.worstDeviation, (mesh.position(v) - targets[v]).norm() / space.height);
     }
   }
   return report;

@@ -1,4 +1,5 @@
-// From guide curves to a hair mesh: outer vertices follow them, inner ones are placed and pinned only where needed.
+// From guide curves to a hair mesh: outer vertices follow them, inner ones are placed and pinned only where
+// needed.
 #pragma once
 
 #include <functional>
@@ -12,20 +13,20 @@ namespace coif::styles {
 
 /// Where every vertex ought to be, in scene units: targets[v] for vertex index v.
 struct SettleOptions {
-  double tolerance = 0.02;  ///< an inner vertex may end this far from its target, in head heights
-  double clearance = 0.004; ///< and must stay this far outside the head
+  double tolerance = 0.02;   ///< an inner vertex may end this far from its target, in head heights
+  double clearance = 0.004;  ///< and must stay this far outside the head
 };
 
-/// Sets all vertices above the root to their targets, places the inner ones, and pins the worst of those that came
-/// out too far from their target or too close to the head, until none is left.
+/// Sets all vertices above the root to their targets, places the inner ones, and pins the worst of those that
+/// came out too far from their target or too close to the head, until none is left.
 Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets, const Surface& head,
                                const HeadSpace& space, const SettleOptions& options, const Context& context);
 
 /// The root vertex (index) below each vertex.
 std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh);
 
-/// The side of the parting that each vertex's bundles lie on: −1, +1, or 0 where bundles of both sides meet in it.
-/// `left` says it of a bundle by index.
+/// The side of the parting that each vertex's bundles lie on: −1, +1, or 0 where bundles of both sides meet
+/// in it. `left` says it of a bundle by index.
 std::vector<int> sidesOf(const HairMesh& mesh, const std::function<bool(std::uint32_t bundle)>& left);
 
 }  // namespace coif::styles

@@ -40,7 +40,8 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
                             const GuideMaker& guide) {
   const auto roots = rootsOf(mesh, input);
   const auto ancestors = rootAncestors(mesh);
-  std::vector<std::uint32_t> tops(mesh.vertices().size(), 0);  // height of the highest column through the vertex
+  std::vector<std::uint32_t> tops(mesh.vertices().size(),
+                                  0);  // height of the highest column through the vertex
   for (const Bundle& bundle : mesh.bundles()) {
     for (std::uint32_t v : bundle.vertices) tops[v] = std::max(tops[v], bundle.height());
   }
@@ -71,24 +72,29 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
   return targets;
 }
 
-Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double back) {
-  // The root layer's vertices are the cage's: all of them carry faces, so fromRoot keeps their order.
-  const auto onParting = [&](std::uint32_t v) {
-    if (input.space.fromScene(mesh.position(v)).z() < back) return false;
-    if (!input.cage.grid.empty()) return input.cage.grid[v][0] == input.cage.columns / 2;
-    return !input.cage.onPlane.empty() && input.cage.onPlane[v] != 0;
-  };
-  std::size_t count = 0;
-  const std::size_t bundles = mesh.bundles().size();
-  for (std::size_t j = 0; j < bundles; ++j) {
-    const Bundle bundle = mesh.bundles()[j];
+bool onLeft(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle) {
+  double sum = 0;
+  for (std::uint32_t v : bundle.face(0)) sum += input.space.fromScene(mesh.position(v)).x();
+  return sum < 0;
+}
+
+std::size_t separateParting(HairMesh& mesh, const StyleInput& input, double back) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> left;  // of the first bundle on each root edge
+  std::vector<EdgeRef> parting;
+  for (const Bundle& bundle : mesh.bundles()) {
+    const auto root = bundle.face(0);
     for (std::uint32_t side = 0; side < bundle.corners; ++side) {
-      const auto root = bundle.face(0);
-      if (!onParting(root[side]) || !onParting(root[(side + 1) % bundle.corners])) continue;
-      // Each edge comes up from both its bundles; the second finds it separated already.
-      if (separateEdge(mesh, {bundle.id, 1, side}).ok()) ++count;
+      const std::uint32_t a = root[side], b = root[(side + 1) % bundle.corners];
+      if (std::min(input.space.fromScene(mesh.position(a)).z(), input.space.fromScene(mesh.position(b)).z()) <
+          back)
+        continue;
+      const bool here = onLeft(mesh, input, bundle);
+      const auto [it, first] = left.try_emplace(std::minmax(a, b), here);
+      if (!first && it->second != here) parting.push_back({bundle.id, 1, side});
     }
   }
+  std::size_t count = 0;
+  for (const EdgeRef& edge : parting) count += separateEdge(mesh, edge).ok();
   return count;
 }
 

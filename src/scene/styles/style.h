@@ -40,9 +40,12 @@ Status extrudeLayers(HairMesh& mesh, std::span<const BundleId> bundles, std::uin
 std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const std::vector<int>& sides,
                             const GuideMaker& guide);
 
-/// Separates, from layer 1 upwards, the root edges along the middle column of the cage from the front back to depth
-/// `back` (head space w). Returns how many.
-Result<std::size_t> separateParting(HairMesh& mesh, const StyleInput& input, double back);
+/// Does the bundle's root face lie on the side of negative u?
+bool onLeft(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle);
+
+/// Separates, from layer 1 upwards, the root edges between left and right bundles from the front back to
+/// depth `back` (head space w). Returns how many.
+std::size_t separateParting(HairMesh& mesh, const StyleInput& input, double back);
 
 // The styles.
 Result<Hairstyle> bob(const StyleInput& input);
