@@ -8,10 +8,15 @@ from combing import finish, lay, push_out, resample, settle, unit
 LAYERS, CUT, STEP = 7, 3.2, 0.4  # layers of the mesh, height of the cut above the chin's base and comb step in cm
 
 scalp = coif.Scalp(coif.example_head())
-cage = scalp.cage(120)
+cage = scalp.cage(160)
 mesh = coif.HairMesh.from_scalp(scalp, cage)
 for _ in range(LAYERS):
     mesh.extrude_faces(mesh.bundle_ids)
+
+
+def clearance(travelled):
+    """Hair lifts off at the root and lies over the hair that it passes, and over the ears."""
+    return 0.4 + 0.9 * np.clip(travelled / 3, 0, 1) + 0.05 * np.minimum(travelled, 14)
 
 
 def comb(roots, side):
@@ -24,12 +29,13 @@ def comb(roots, side):
         front = np.clip((points[:, 2] - 1) / 5, 0, 1) * np.clip((8.2 - np.abs(points[:, 0])) / 3, 0, 1)
         wish = np.zeros_like(points)
         wish[:, 1] = -1
-        wish[:, 0] = side * (0.25 * np.clip((points[:, 1] - 15) / 6, 0, 1) + 2.5 * front)
-        wish[:, 2] = -1.2 * front
+        top = np.clip((points[:, 1] - 15) / 6, 0, 1)
+        wish[:, 0] = side * (0.25 * top + 2.5 * front)
+        wish[:, 2] = -1.2 * front - 0.4 * top * np.clip((3 - points[:, 2]) / 3, 0, 1)
         wish -= normal * np.clip((wish * normal).sum(axis=1), None, 0)[:, None]
         direction = unit(0.55 * direction + unit(wish))
         step = np.where(going, STEP, 0)[:, None]
-        moved = push_out(scalp.surface, points + step * direction, 0.55 + 0.08 * np.minimum(travelled, 14))
+        moved = push_out(scalp.surface, points + step * direction, clearance(travelled))
         points = np.where(going[:, None], moved, points)
         travelled += np.where(going, STEP, 0)
         paths.append(points.copy())
@@ -51,7 +57,7 @@ for b in mesh.bundle_ids.tolist():
 right = sorted(set(mesh.bundle_ids.tolist()) - set(left))
 
 x = cage.positions[:, 0]
-front = cage.grid[:, 1] <= crown
+front = cage.grid[:, 1] < crown  # where the slit ends, one vertex stays
 for bundles, sign in ((left, 1), (right, -1)):
     # Behind the parting the middle line belongs to both sides and falls straight.
     lay(mesh, comb(cage.positions, np.where(np.abs(x) < 0.1, np.where(front, sign, 0), np.sign(x))), bundles)

@@ -5,7 +5,7 @@ source "$(dirname "$0")/common.sh"
 mkdir -p docs/pictures build/pictures
 for example in examples/[0-9]*.py; do
   say "$example"
-  PYTHONPATH=$BUILD/python "$VENV/bin/python" "$example" -o build/pictures --size "${SIZE:-300}"
+  PYTHONPATH=$BUILD/python "$VENV/bin/python" "$example" -o build/pictures --size "${SIZE:-250}"
 done
 cp build/pictures/*.png docs/pictures/
 for picture in docs/pictures/*.png; do
