@@ -21,7 +21,9 @@ def wheel(tmp_path_factory):
         if importlib.util.find_spec(needed) is None:
             pytest.skip(f"{needed} is not installed: the wheel cannot be built without a network")
     folder = tmp_path_factory.mktemp("wheel")
-    environment = os.environ | {"COIF_LAUNCHER": shutil.which("ccache") or ""}
+    # CMake's own choice of compilers, so that ccache knows what the build tree has compiled already.
+    compilers = {"CC": shutil.which("cc"), "CXX": shutil.which("c++")}
+    environment = os.environ | {"COIF_LAUNCHER": shutil.which("ccache") or ""} | {k: v for k, v in compilers.items() if v}
     environment.pop("PYTHONPATH", None)
     made = subprocess.run(
         [sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-build-isolation", "--no-deps", "--no-index", "-w", folder],
