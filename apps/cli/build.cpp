@@ -33,13 +33,13 @@ Status build(const BuildArguments& arguments, Session& session) {
               : arguments.meshKind == "tubes" ? StrandMesh::Tubes
                                               : StrandMesh::Cards;
   const Context context = session.context();
+  COIF_ASSIGN(const StrandSet* strands, evaluation.strands(scene, context));
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const std::string& output : arguments.outputs) {
     COIF_ASSIGN(const WriteReport written, evaluation.exportTo(scene, output, what, context));
     files.push_back({{"file", output}, {"bytes", written.bytes}, {"notes", written.notes}});
     session.say("wrote " + output);
   }
-  COIF_ASSIGN(const StrandSet* strands, evaluation.strands(scene, context));
   if (arguments.evaluate.explain && !session.json) std::cout << explainText(evaluation.reports());
   if (!arguments.evaluate.reportFile.empty())
     COIF_TRY(writeReport(evaluation, arguments.evaluate.reportFile));

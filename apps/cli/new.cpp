@@ -1,9 +1,7 @@
 // coif new: from a head model to a scene with a hairstyle.
 #include <cmath>
 
-#include "coif/base/random.h"
 #include "coif/io/mesh_io.h"
-#include "coif/io/safe_file.h"
 #include "coif/place/place.h"
 #include "coif/scalp/cage.h"
 #include "coif/scalp/weld.h"
@@ -36,18 +34,6 @@ Result<std::optional<Vec3>> axis(const std::string& text) {
   Vec3 out = Vec3::Zero();
   out[int(found)] = negative ? -1 : 1;
   return std::optional<Vec3>(out);
-}
-
-Result<std::uint64_t> fileHash(const std::string& path) {
-  COIF_ASSIGN(const auto bytes, readFile(path));
-  std::uint64_t hash = bytes.size();
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    for (std::size_t j = i; j < std::min(bytes.size(), i + 8); ++j)
-      word = word << 8 | std::uint64_t(bytes[j]);
-    hash = hashCombine(hash, word);
-  }
-  return hash;
 }
 
 Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, const Region& region,

@@ -1,5 +1,6 @@
 #include "coif/scene/evaluate.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "coif/base/random.h"
@@ -64,6 +65,8 @@ struct Evaluation::Impl {
   std::vector<StageReport> reports;
 
   std::filesystem::path headPath;
+  std::filesystem::file_time_type headTime;
+  std::uint64_t headHash = 0;
   std::unique_ptr<Surface> head;
   std::optional<std::uint64_t> checkedHash;
   std::optional<std::uint64_t> placeKey;  // of the scene's mesh, not of the placed one
@@ -107,7 +110,9 @@ Status Evaluation::Impl::loadHead(const Scene& scene, const Context& context) {
     return {};
   }
   const std::filesystem::path path = scene.headPath();
-  if (head && path == headPath && !forced("head")) {
+  std::error_code unknown;
+  const auto time = std::filesystem::last_write_time(path, unknown);
+  if (head && path == headPath && time == headTime && !forced("head")) {
     add("head", StageState::Reused, "the same file", 0, meshBytes(head->mesh()));
     return {};
   }
@@ -123,11 +128,16 @@ Status Evaluation::Impl::loadHead(const Scene& scene, const Context& context) {
     if (error.code == ErrorCode::NotFound) error.message = "the head that the scene refers to is not there";
     return inFile(error, path.string());
   }
+  COIF_ASSIGN(headHash, fileHash(path));
   head = std::make_unique<Surface>(*mesh);
   headPath = path;
-  strandsKey.reset();
-  add("head", StageState::Ran, "strand roots lie on it", watch.seconds(), meshBytes(head->mesh()))
-      .notes.push_back(countText(mesh->faceCount(), "polygons"));
+  headTime = time;
+  StageReport& report =
+      add("head", StageState::Ran, "strand roots lie on it", watch.seconds(), meshBytes(head->mesh()));
+  report.notes.push_back(countText(mesh->faceCount(), "polygons"));
+  if (scene.head.contentHash != 0 && scene.head.contentHash != headHash) {
+    report.notes.push_back("the file changed since the hair mesh was laid on it");
+  }
   return {};
 }
 
@@ -177,7 +187,7 @@ Status Evaluation::Impl::runPlace(const Scene& scene, const Context& context) {
 }
 
 Status Evaluation::Impl::growStrands(const Scene& scene, const Context& context) {
-  const std::uint64_t headKey = head ? scene.head.contentHash + 1 : 0;
+  const std::uint64_t headKey = head ? hashCombine(1, headHash) : 0;
   const std::uint64_t key = coif::strandsKey(scene.strands, placedHash, headKey, scene.metersPerUnit);
   if (strandsKey == key && !forced("strands")) {
     add("strands", StageState::Reused, "neither mesh, head nor settings changed", 0, grown.strands.bytes());
@@ -225,8 +235,14 @@ Result<const StrandSet*> Evaluation::strands(const Scene& scene, const Context& 
 
 Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesystem::path& path,
                                          StrandExport what, const Context& context) {
-  // A second file from the same call needs nothing rebuilt; ask quietly for what is already there.
+  const std::size_t before = impl_->reports.size();
   COIF_ASSIGN(const StrandSet* set, strands(scene, context));
+  // A second file from the same strands repeats nothing, in the report neither.
+  const auto idle = [](const StageReport& report) { return report.state != StageState::Ran; };
+  if (before > 0 &&
+      std::all_of(impl_->reports.begin() + std::ptrdiff_t(before), impl_->reports.end(), idle)) {
+    impl_->reports.resize(before);
+  }
   what.strands = set;
   what.hairMesh = &impl_->placed;
   what.head = impl_->head ? &impl_->head->mesh() : nullptr;

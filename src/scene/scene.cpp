@@ -1,8 +1,10 @@
 #include "coif/scene/scene.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "coif/base/random.h"
+#include "coif/io/safe_file.h"
 
 namespace coif {
 
@@ -24,6 +26,18 @@ std::uint64_t meshHash(const HairMesh& mesh) {
     for (std::uint32_t vertex : bundle.vertices) add(vertex);
   }
   for (const EdgeSplit& split : mesh.splits()) add(split.a), add(split.b), add(split.layer);
+  return hash;
+}
+
+Result<std::uint64_t> fileHash(const std::filesystem::path& path) {
+  COIF_ASSIGN(const auto bytes, readFile(path));
+  std::uint64_t hash = bytes.size();
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    for (std::size_t j = i; j < std::min(bytes.size(), i + 8); ++j)
+      word = word << 8 | std::uint64_t(bytes[j]);
+    hash = hashCombine(hash, word);
+  }
   return hash;
 }
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "scene/sample_scene.h"
@@ -72,6 +75,31 @@ TEST(Evaluation, SkippingThePlacementChangesNothing) {
   Evaluation forced(options);
   ASSERT_TRUE(forced.strands(scene).ok());
   EXPECT_EQ(lastState(forced, "place"), StageState::Ran);
+}
+
+TEST(Evaluation, AHeadThatChangedIsReadAgainAndSaid) {
+  const auto path = std::filesystem::temp_directory_path() / "coif-evaluate-head.obj";
+  const auto write = [&](double height) {
+    std::ofstream(path) << "v 0 0 " << height << "\nv 2 0 " << height << "\nv 2 2 " << height << "\nv 0 2 "
+                        << height << "\nf 1 2 3 4\n";
+  };
+  write(0);
+  Scene scene = test::sampleScene();
+  scene.strands.count = 16;
+  scene.head.path = path;
+  scene.head.contentHash = fileHash(path).value();
+  Evaluation evaluation;
+  const StrandSet before = **evaluation.strands(scene);
+  EXPECT_TRUE(evaluation.reports()[0].notes.size() == 1);
+  evaluation.clearReports();
+  write(-0.25);
+  std::filesystem::last_write_time(path, std::filesystem::last_write_time(path) + std::chrono::seconds(2));
+  const StrandSet after = **evaluation.strands(scene);
+  EXPECT_EQ(lastState(evaluation, "head"), StageState::Ran);
+  EXPECT_EQ(evaluation.reports()[0].notes.size(), 2u);
+  // Roots follow the head down by exactly its move.
+  EXPECT_NEAR(after.points[0].z() - before.points[0].z(), -0.25, 1e-6);
+  std::filesystem::remove(path);
 }
 
 TEST(Evaluation, AHeadThatIsGoneIsNamed) {

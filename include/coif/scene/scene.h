@@ -54,6 +54,9 @@ struct Scene {
 /// 64-bit fingerprint of the mesh's topology and positions.
 std::uint64_t meshHash(const HairMesh& mesh);
 
+/// 64-bit fingerprint of a file's bytes. Errors: those of readFile.
+Result<std::uint64_t> fileHash(const std::filesystem::path& path);
+
 /// Reads a .coif of this or an older version. Every array is checked before use; the hair mesh must keep all
 /// its invariants. Errors: NotFound, Unreadable, Malformed (with the JSON path as the place), Unsupported
 /// (newer version).
