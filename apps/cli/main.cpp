@@ -1,4 +1,5 @@
 // coif: hairstyles from a head model, at the command line.
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -6,6 +7,8 @@
 
 int main(int argc, char** argv) {
   using namespace coif::cli;
+  // A file-size limit is a failed write like a full disk: an error with a sentence, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{
       "Coif models hair with hair meshes: from a head to strands for Blender, Unreal and renderers."};
   app.footer(

@@ -24,9 +24,9 @@ Vec3 awayFromParting(const Vec3& point, double whorl, int side) {
 /// Keeps hair beside the face: in front of the ears and below the forehead it may not come closer to the
 /// middle.
 Vec3 keepOffFace(const Vec3& point) {
-  constexpr double kFront = 0.14, kForehead = 0.22, kHalfWidth = 0.27;
+  constexpr double kFront = 0.12, kForehead = 0.32, kHalfWidth = 0.28;
   const double depth =
-      smoothStep(kFront, kFront + 0.12, point.z()) * smoothStep(kForehead, kForehead - 0.18, point.y());
+      smoothStep(kFront, kFront + 0.12, point.z()) * smoothStep(kForehead, kForehead - 0.16, point.y());
   const double least = kHalfWidth * depth;
   if (std::abs(point.x()) >= least) return point;
   return Vec3(std::copysign(least, point.x()), point.y(), point.z());

@@ -8,13 +8,13 @@ namespace coif::styles {
 struct FlowStyle {
   std::uint32_t layers = 8;
   bool parted = true;
-  double whorl = -0.12;     ///< w of the parting's end and of the point that hair behind it fans out from
-  double fan = 0.9;         ///< pull away from the parting at the root, against gravity 1
-  double reach = 0.2;       ///< head heights after which the pulls at the root have faded by 1/e
-  double back = 0.6;        ///< pull backwards at the front hairline
-  double length = 1.2;      ///< at most, head heights
-  double thickness = 0.05;  ///< of the whole cover, head heights: the highest roots lie this far out
-  double close = 0.012;     ///< the lowest roots lie this far out
+  double whorl = -0.12;      ///< w of the parting's end and of the point that hair behind it fans out from
+  double fan = 0.9;          ///< pull away from the parting at the root, against gravity 1
+  double reach = 0.2;        ///< head heights after which the pulls at the root have faded by 1/e
+  double back = 0.6;         ///< pull backwards at the front hairline
+  double length = 1.2;       ///< at most, head heights
+  double thickness = 0.045;  ///< of the whole cover, head heights: the highest roots lie this far out
+  double close = 0.022;      ///< the lowest roots lie this far out
   std::function<double(const Vec3&)>
       cut;          ///< height v at which hair at this point ends; empty: by length alone
   double tuck = 0;  ///< pull towards the neck over the last `tuckSpan` above the cut

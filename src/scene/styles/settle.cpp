@@ -4,6 +4,7 @@
 
 #include "coif/base/parallel.h"
 #include "coif/place/place.h"
+#include "scene/styles/push_out.h"
 
 namespace coif::styles {
 
@@ -42,9 +43,10 @@ std::vector<Fault> faultsOf(const HairMesh& mesh, const std::vector<std::uint8_t
 
 }  // namespace
 
-Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets, const Surface& head,
+Result<HairstyleReport> settle(HairMesh& mesh, std::vector<Vec3> targets, const Surface& head,
                                const HeadSpace& space, const SettleOptions& options, const Context& context) {
   HairstyleReport report;
+  pushOut(mesh, targets, head, space, options.clearance, context);
   for (std::uint32_t v = 0; v < targets.size(); ++v) {
     if (mesh.vertices()[v].layer > 0) mesh.setPosition(v, targets[v]);
   }

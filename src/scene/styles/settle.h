@@ -14,12 +14,13 @@ namespace coif::styles {
 /// Where every vertex ought to be, in scene units: targets[v] for vertex index v.
 struct SettleOptions {
   double tolerance = 0.02;   ///< an inner vertex may end this far from its target, in head heights
-  double clearance = 0.004;  ///< and must stay this far outside the head
+  double clearance = 0.010;  ///< and must stay this far outside the head
 };
 
-/// Sets all vertices above the root to their targets, places the inner ones, and pins the worst of those that
-/// came out too far from their target or too close to the head, until none is left.
-Result<HairstyleReport> settle(HairMesh& mesh, const std::vector<Vec3>& targets, const Surface& head,
+/// Pushes the targets out of the head, sets all vertices above the root to them, places the inner ones, and
+/// pins the worst of those that came out too far from their target or too close to the head, until none is
+/// left.
+Result<HairstyleReport> settle(HairMesh& mesh, std::vector<Vec3> targets, const Surface& head,
                                const HeadSpace& space, const SettleOptions& options, const Context& context);
 
 /// The root vertex (index) below each vertex.
