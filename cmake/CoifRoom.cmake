@@ -2,7 +2,6 @@
 # One static library coif_NAME (alias coif::NAME) from every source below src/NAME.
 # HEADERS: third parties of headers alone, which a user of the installed library does not need.
 add_library(coif_options INTERFACE)
-target_compile_features(coif_options INTERFACE cxx_std_20)
 target_compile_options(coif_options INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off>)
 
@@ -15,6 +14,7 @@ function(coif_room NAME)
   target_include_directories(coif_${NAME}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_compile_features(coif_${NAME} PUBLIC cxx_std_20)  # for those who link the installed room
   list(TRANSFORM ROOM_ROOMS PREPEND coif::)
   foreach(header_library ${ROOM_HEADERS})
     target_link_libraries(coif_${NAME} PRIVATE $<BUILD_INTERFACE:${header_library}>)

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <span>
 #include <vector>
 
 #include "coif/hairmesh/operations.h"

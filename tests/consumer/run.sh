@@ -5,7 +5,10 @@ set -euo pipefail
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$build/consumer" && mkdir -p "$build/consumer"
-cmake --install "$build" --prefix "$build/consumer/prefix" >/dev/null
-cmake -S "$here" -B "$build/consumer/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$build/consumer/prefix" >/dev/null
-cmake --build "$build/consumer/build" >/dev/null
+log=$build/consumer/log
+{
+  cmake --install "$build" --prefix "$build/consumer/prefix"
+  cmake -S "$here" -B "$build/consumer/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$build/consumer/prefix"
+  cmake --build "$build/consumer/build"
+} >"$log" 2>&1 || { cat "$log"; exit 1; }
 "$build/consumer/build/consumer"

@@ -23,7 +23,8 @@ def wheel(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheel")
     # CMake's own choice of compilers, so that ccache knows what the build tree has compiled already.
     compilers = {"CC": shutil.which("cc"), "CXX": shutil.which("c++")}
-    environment = os.environ | {"COIF_LAUNCHER": shutil.which("ccache") or ""} | {k: v for k, v in compilers.items() if v}
+    # The compiler by the name that the build used: a cache tells c++ from g++.
+    environment = {"CC": "cc", "CXX": "c++"} | dict(os.environ) | {"COIF_LAUNCHER": shutil.which("ccache") or ""} | {k: v for k, v in compilers.items() if v}
     environment.pop("PYTHONPATH", None)
     made = subprocess.run(
         [sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-build-isolation", "--no-deps", "--no-index", "-w", folder],

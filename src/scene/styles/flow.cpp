@@ -37,6 +37,7 @@ CombOptions combing(const FlowStyle& style, const Root& root) {
   const bool ahead = root.point.z() > style.divide;
   CombOptions out;
   out.length = style.length;
+  out.rise = 0.12;
   out.direction = [=, side = root.side](const Vec3& point, double s) {
     const double fade = std::exp(-s / style.reach);
     Vec3 wanted = Vec3(0, -1, 0) + style.fan * fade * awayFromParting(point, style.whorl, side) +
@@ -52,8 +53,12 @@ CombOptions combing(const FlowStyle& style, const Root& root) {
     }
     return wanted;
   };
-  const double cover = style.close + style.thickness * std::pow(root.rank, 1.3);
-  out.clearance = [=](double s) { return cover * smoothStep(0, 0.16, s) + 0.004 * smoothStep(0, 0.02, s); };
+  // Hair lies thicker the more roots it has passed: close at the root, farther out down the head.
+  const double over = style.thickness * std::pow(root.rank, 1.3);
+  out.clearance = [=](double s) {
+    return style.close * smoothStep(0, 0.14, s) + over * smoothStep(0.05, style.ramp, s) +
+           0.003 * smoothStep(0, 0.02, s);
+  };
   if (style.cut)
     out.stop = [cut = style.cut](const Vec3& point, double s) { return s > 0.06 && point.y() <= cut(point); };
   out.constrain = keepOffFace;
@@ -94,7 +99,7 @@ Result<Hairstyle> longHair(const StyleInput& input) {
   style.layers = 9;
   style.length = 2.6;
   style.back = 0.8;
-  style.thickness = 0.06;
+  style.thickness = 0.045;
   style.shoulders = 0.8;
   style.cut = [](const Vec3&) { return -1.0; };
   return flow(input, style);

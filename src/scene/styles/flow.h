@@ -14,6 +14,7 @@ struct FlowStyle {
   double back = 0.6;         ///< pull backwards at the front hairline
   double length = 1.2;       ///< at most, head heights
   double thickness = 0.045;  ///< of the whole cover, head heights: the highest roots lie this far out
+  double ramp = 0.75;        ///< head heights after which hair lies that far out
   double close = 0.022;      ///< the lowest roots lie this far out
   std::function<double(const Vec3&)>
       cut;          ///< height v at which hair at this point ends; empty: by length alone

@@ -1,5 +1,7 @@
 #include "scene/styles/push_out.h"
 
+#include <algorithm>
+
 #include "coif/base/parallel.h"
 
 namespace coif::styles {
@@ -34,8 +36,11 @@ std::vector<Sample> samplesOf(const HairMesh& mesh) {
 void pushOut(const HairMesh& mesh, std::vector<Vec3>& targets, const Surface& head, const HeadSpace& space,
              double margin, const Context& context) {
   constexpr int kRounds = 8;
+  // Head heights: farther spoils the shape more than a few points inside do.
+  constexpr double kFarthest = 0.06;
   const auto samples = samplesOf(mesh);
   std::vector<Vec3> pushes(samples.size());
+  const std::vector<Vec3> wanted = targets;
   for (int round = 0; round < kRounds && !context.cancelled(); ++round) {
     parallelFor(context, samples.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
@@ -47,7 +52,7 @@ void pushOut(const HairMesh& mesh, std::vector<Vec3>& targets, const Surface& he
         }
         Vec3 away;
         const double distance = clearanceOf(head, space, space.fromScene(middle), away);
-        const double least = atRoot ? 0.25 * margin : margin;
+        const double least = atRoot ? 0.5 * margin : margin;
         pushes[s] = distance < least ? Vec3(space.height * (least - distance) * space.directionToScene(away))
                                      : Vec3(Vec3::Zero());
       }
@@ -65,7 +70,11 @@ void pushOut(const HairMesh& mesh, std::vector<Vec3>& targets, const Surface& he
       moved = true;
     }
     if (!moved) return;
-    for (std::size_t v = 0; v < targets.size(); ++v) targets[v] += moves[v];
+    for (std::size_t v = 0; v < targets.size(); ++v) {
+      const Vec3 total = targets[v] + moves[v] - wanted[v];
+      targets[v] =
+          wanted[v] + total * std::min(1.0, kFarthest * space.height / std::max(total.norm(), 1e-300));
+    }
   }
 }
 

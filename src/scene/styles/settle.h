@@ -13,7 +13,7 @@ namespace coif::styles {
 
 /// Where every vertex ought to be, in scene units: targets[v] for vertex index v.
 struct SettleOptions {
-  double tolerance = 0.02;   ///< an inner vertex may end this far from its target, in head heights
+  double tolerance = 0.015;  ///< an inner vertex may end this far from its target, in head heights
   double clearance = 0.010;  ///< and must stay this far outside the head
 };
 
