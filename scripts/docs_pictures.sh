@@ -1,8 +1,15 @@
 #!/usr/bin/env bash
-# Makes the pictures of the documentation anew: docs/pictures/*.png from the examples. A minute or two on two cores.
+# Makes the pictures of the documentation anew: docs/pictures/*.png from the ready hairstyles and the examples. A few
+# minutes on two cores.
 source "$(dirname "$0")/common.sh"
-[ -d "$BUILD/python/coif" ] || { scripts/setup.sh && configure_and_build coif_python; }
+[ -d "$BUILD/python/coif" ] && [ -x "$BUILD/bin/coif" ] || { scripts/setup.sh && configure_and_build coif coif_python; }
 mkdir -p docs/pictures build/pictures
+"$BUILD/bin/coif" -q example-head -o build/pictures/head.obj
+for style in bob long bun mohawk pixie; do
+  say "$style"
+  "$BUILD/bin/coif" -q new --scalp build/pictures/head.obj --meters-per-unit 0.01 --style $style -o build/pictures/$style.coif
+  "$BUILD/bin/coif" -q render build/pictures/$style.coif -o docs/pictures/style-$style.png --strands 60000 --size 340x340
+done
 for example in examples/[0-9]*.py; do
   say "$example"
   PYTHONPATH=$BUILD/python "$VENV/bin/python" "$example" -o build/pictures --size "${SIZE:-250}"
