@@ -7,7 +7,8 @@
 
 int main(int argc, char** argv) {
   using namespace coif::cli;
-  // A file-size limit is a failed write like a full disk: an error with a sentence, not the end of the process.
+  // A file-size limit is a failed write like a full disk: an error with a sentence, not the end of the
+  // process.
   std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{
       "Coif models hair with hair meshes: from a head to strands for Blender, Unreal and renderers."};

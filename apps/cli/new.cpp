@@ -90,7 +90,7 @@ Status makeScene(const NewArguments& arguments, Session& session) {
                         : mesh.metersPerUnit > 0 ? mesh.metersPerUnit
                                                  : kHeadMeters / cage.frame.height;
   scene.upAxis = mesh.upAxis;
-  scene.look.azimuthDeg += frontAzimuthDeg(cage.frame, mesh.upAxis);
+  scene.look.azimuthDeg = hairstyle.showFromDeg + frontAzimuthDeg(cage.frame, mesh.upAxis);
   scene.hairMesh = std::move(hairstyle.mesh);
   scene.placedHash = meshHash(scene.hairMesh);
   COIF_TRY(saveScene(scene, arguments.output));

@@ -17,8 +17,8 @@ namespace coif {
 Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
                                         std::uint64_t maxBytes = std::uint64_t{1} << 31);
 
-/// Writes to a temporary file beside `path`; commit() flushes it to disk and renames it over `path`. Without a
-/// commit the temporary file is removed and the old file is as it was. The first failed write is kept and
+/// Writes to a temporary file beside `path`; commit() flushes it to disk and renames it over `path`. Without
+/// a commit the temporary file is removed and the old file is as it was. The first failed write is kept and
 /// returned by commit(), so callers need not test each one.
 class SafeFile {
  public:

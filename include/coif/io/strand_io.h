@@ -23,15 +23,16 @@ struct StrandFrame {
   std::span<const Vec3f> points;
 };
 
-/// Everything one export carries. Pointers may be null; what a format cannot hold is said in WriteReport::notes.
+/// Everything one export carries. Pointers may be null; what a format cannot hold is said in
+/// WriteReport::notes.
 struct StrandExport {
-  const StrandSet* strands = nullptr;    ///< required
-  const HairMesh* hairMesh = nullptr;    ///< written beside the strands as an ordinary mesh (USD, glTF)
-  const PolygonMesh* head = nullptr;     ///< written beside the strands (USD, glTF)
-  std::vector<StrandFrame> frames;       ///< USD time samples; empty: static
+  const StrandSet* strands = nullptr;  ///< required
+  const HairMesh* hairMesh = nullptr;  ///< written beside the strands as an ordinary mesh (USD, glTF)
+  const PolygonMesh* head = nullptr;   ///< written beside the strands (USD, glTF)
+  std::vector<StrandFrame> frames;     ///< USD time samples; empty: static
   double timeCodesPerSecond = 24;
-  StrandMesh mesh = StrandMesh::Cards;   ///< glTF fall-back mesh
-  std::size_t meshStrandLimit = 2000;    ///< the fall-back uses this many strands (a prefix) at most, widened
+  StrandMesh mesh = StrandMesh::Cards;  ///< glTF fall-back mesh
+  std::size_t meshStrandLimit = 2000;   ///< the fall-back uses this many strands (a prefix) at most, widened
   Vec3f color = Vec3f(0.09f, 0.05f, 0.03f);  ///< linear RGB where the strands have no colours
   std::string creator = "Coif";
 };
@@ -42,13 +43,13 @@ struct WriteReport {
 };
 
 /// Writes by the extension of `path`, atomically: a crash or a full disk leaves the old file as it was.
-/// Errors: Unsupported extension, InvalidArgument (invalid strands), Unreadable (cannot write), TooLarge (a format's
-/// limit: 65 536 points a strand in .hair, 4 GiB in .glb).
+/// Errors: Unsupported extension, InvalidArgument (invalid strands), Unreadable (cannot write), TooLarge (a
+/// format's limit: 65 536 points a strand in .hair, 4 GiB in .glb).
 Result<WriteReport> saveStrands(const StrandExport& what, const std::filesystem::path& path,
                                 const Context& context = {});
 
-/// Reads .hair, .usda BasisCurves, .usdc BasisCurves written by Coif, and the strands of a .glb/.gltf written by Coif.
-/// Errors as loadPolygonMesh.
+/// Reads .hair, .usda BasisCurves, .usdc BasisCurves written by Coif, and the strands of a .glb/.gltf written
+/// by Coif. Errors as loadPolygonMesh.
 Result<StrandSet> loadStrands(const std::filesystem::path& path);
 
 }  // namespace coif

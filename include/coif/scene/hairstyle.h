@@ -28,6 +28,7 @@ struct HairstyleReport {
 struct Hairstyle {
   HairMesh mesh;
   HairstyleReport report;
+  double showFromDeg = 30;  ///< azimuth from which it shows best; 0 looks at the face
 };
 
 /// Models `style` on the cage: extrudes layers, separates the parting, lays the outer vertices along combed

@@ -77,7 +77,7 @@ Result<Hairstyle> bun(const StyleInput& input) {
   options.tolerance = 0.012;
   COIF_ASSIGN(const HairstyleReport report,
               settle(mesh, targets, input.head, input.space, options, input.context));
-  return Hairstyle{std::move(mesh), report};
+  return Hairstyle{std::move(mesh), report, 115};
 }
 
 }  // namespace coif::styles

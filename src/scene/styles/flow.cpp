@@ -61,7 +61,12 @@ CombOptions combing(const FlowStyle& style, const Root& root) {
   };
   if (style.cut)
     out.stop = [cut = style.cut](const Vec3& point, double s) { return s > 0.06 && point.y() <= cut(point); };
-  out.constrain = keepOffFace;
+  // Hair of the middle stays there: going round the head it would drift to either side by rounding alone.
+  if (root.side == 0) {
+    out.constrain = [x = root.point.x()](const Vec3& point) { return Vec3(x, point.y(), point.z()); };
+  } else {
+    out.constrain = keepOffFace;
+  }
   return out;
 }
 

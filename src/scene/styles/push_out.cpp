@@ -57,21 +57,24 @@ void pushOut(const HairMesh& mesh, std::vector<Vec3>& targets, const Surface& he
                                      : Vec3(Vec3::Zero());
       }
     });
-    // Each vertex takes the greatest push that it is part of; the order of samples is fixed, so is the
-    // result.
-    std::vector<Vec3> moves(targets.size(), Vec3::Zero());
+    // As far as the greatest push that a vertex is part of, in the mean direction of all: the same on both
+    // sides of the head, and whatever the order of the samples.
+    std::vector<Vec3> sums(targets.size(), Vec3::Zero());
+    std::vector<double> greatest(targets.size(), 0);
     bool moved = false;
     for (std::size_t s = 0; s < samples.size(); ++s) {
       if (pushes[s].squaredNorm() == 0) continue;
       for (std::uint32_t v : samples[s]) {
-        if (mesh.vertices()[v].layer > 0 && pushes[s].squaredNorm() > moves[v].squaredNorm())
-          moves[v] = pushes[s];
+        if (mesh.vertices()[v].layer == 0) continue;
+        sums[v] += pushes[s];
+        greatest[v] = std::max(greatest[v], pushes[s].norm());
       }
       moved = true;
     }
     if (!moved) return;
     for (std::size_t v = 0; v < targets.size(); ++v) {
-      const Vec3 total = targets[v] + moves[v] - wanted[v];
+      if (greatest[v] == 0) continue;
+      const Vec3 total = targets[v] + greatest[v] * sums[v].stableNormalized() - wanted[v];
       targets[v] =
           wanted[v] + total * std::min(1.0, kFarthest * space.height / std::max(total.norm(), 1e-300));
     }

@@ -56,7 +56,9 @@ Result<HairstyleReport> settle(HairMesh& mesh, std::vector<Vec3> targets, const 
     const auto faults = faultsOf(mesh, external, targets, head, space, options, context);
     if (faults.empty()) break;
     // The worst eighth first: pinning them mends many of the others.
-    const std::size_t count = round < kRounds ? (faults.size() + 7) / 8 : faults.size();
+    // With those as bad as the last of them go its mirror images.
+    std::size_t count = round < kRounds ? (faults.size() + 7) / 8 : faults.size();
+    while (count < faults.size() && faults[count].size > 0.98 * faults[count - 1].size) ++count;
     for (std::size_t i = 0; i < count; ++i) {
       mesh.setPosition(faults[i].vertex, targets[faults[i].vertex]);
       mesh.setPinned(faults[i].vertex, true);
