@@ -23,7 +23,7 @@ THIRD_PARTIES = {  # first path element of an include -> rooms that may use it
     "oneapi": ["base"], "tbb": ["base"], "hwy": ["base"],
     "OpenMesh": ["scalp", "hairmesh"], "igl": ["scalp", "place"], "opensubdiv": ["hairmesh"],
     "embree3": ["light"], "epoxy": ["preview"], "EGL": ["preview"], "GL": ["preview"],
-    "tiny_gltf.h": ["io"], "lz4.h": ["io"], "nlohmann": ["io", "scene"], "stb_image_write.h": ["preview"],
+    "tiny_gltf.h": ["io"], "lz4.h": ["io"], "nlohmann": ["io", "scene"], "stb": ["light"], "OpenEXR": ["light"],
     "CLI": [], "imgui.h": [], "GLFW": [], "nanobind": [],
 }
 PUBLIC_ALLOWED = {"Eigen"}

@@ -1,4 +1,4 @@
-#include "coif/preview/image.h"
+#include "coif/light/image.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"

@@ -1,4 +1,4 @@
-#include "coif/preview/camera.h"
+#include "coif/light/camera.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
