@@ -10,6 +10,7 @@ NB_MODULE(_coif, m) {
   bindPlace(m);
   bindStrands(m);
   bindScene(m);
+  bindEditor(m);
 #ifdef COIF_WITH_PREVIEW
   bindPreview(m);
 #endif

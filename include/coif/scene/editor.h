@@ -1,0 +1,91 @@
+// An open document: the scene, what is selected, unlimited undo, and commands by name.
+//
+// One command is one undo step: the operation itself, the placement of internal vertices after it and the
+// selection it leaves. A refused command changes nothing.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "coif/hairmesh/edit.h"
+#include "coif/hairmesh/history.h"
+#include "coif/scalp/surface.h"
+#include "coif/scene/command.h"
+#include "coif/scene/scene.h"
+#include "coif/scene/selection.h"
+
+namespace coif {
+
+/// What undo restores besides the mesh.
+struct EditState {
+  Selection selection;
+  std::vector<BundleId> hidden;  ///< ascending
+  std::vector<VertexId> frozen;  ///< ascending; moves and smoothing leave them
+  bool symmetric = false;        ///< operations and moves happen on both sides of the mirror plane
+  Vec3 mirrorPoint = Vec3::Zero(), mirrorNormal = Vec3::UnitX();
+  StrandSettings strands;
+  LookSettings look;
+  bool operator==(const EditState&) const;
+};
+
+class Editor {
+ public:
+  explicit Editor(Scene scene);
+  ~Editor();
+  Editor(Editor&&) noexcept;
+  Editor& operator=(Editor&&) noexcept;
+
+  /// The document as it stands. scene().strands and .look are those of state().
+  const Scene& scene() const { return scene_; }
+  const HairMesh& mesh() const { return scene_.hairMesh; }
+  const EditState& state() const { return state_; }
+
+  /// The head for commands that look at it (push_out); may be null, must outlive the editor.
+  void setHead(const Surface* head) { head_ = head; }
+
+  /// Runs a command. Errors: NotFound (no such command), InvalidArgument (an argument that is unknown, of
+  /// the wrong kind or out of range; nothing suitable selected), and those of the operation. On an error
+  /// nothing has changed. Cost: the operation's, and one placement when the mesh changed.
+  Status run(std::string_view command, const CommandArguments& arguments = {}, const Context& context = {});
+  /// Why the command cannot run now, in one sentence; empty when it can be tried.
+  std::string refusal(std::string_view command) const;
+
+  std::size_t undoCount() const { return done_; }
+  std::size_t redoCount() const { return steps_.size() - done_; }
+  /// Labels of all steps, oldest first; undoCount() of them are done.
+  std::vector<std::string> stepLabels() const;
+  /// The Python lines of the steps that are done.
+  std::string pythonLog() const;
+  std::size_t historyBytes() const;
+
+  /// True from the first step after construction or save() on.
+  bool modified() const { return done_ != savedAt_; }
+  Status save(const std::filesystem::path& path);
+  /// Counts undo, redo and steps: what a view compares to know that it is out of date.
+  std::uint64_t revision() const { return revision_; }
+
+  /// Bytes of everything that undo restores, in a fixed order.
+  std::vector<std::byte> canonicalState() const;
+
+ private:
+  struct Step {
+    std::string label, python;
+    bool meshChanged = false;
+    std::shared_ptr<const EditState> before, after;  // shared between neighbouring steps where equal
+  };
+  Status undo();
+  Status redo();
+  void adopt(const EditState& state);
+
+  Scene scene_;
+  EditState state_;
+  const Surface* head_ = nullptr;
+  History history_;
+  std::vector<Step> steps_;
+  std::size_t done_ = 0, savedAt_ = 0;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace coif

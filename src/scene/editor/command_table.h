@@ -1,0 +1,77 @@
+// The commands behind Editor::run, and what they work on.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "coif/base/context.h"
+#include "coif/hairmesh/operations.h"
+#include "coif/scene/editor.h"
+
+namespace coif::editor {
+
+/// A command's arguments, complete (defaults filled in) and of the right kinds.
+class Arguments {
+ public:
+  explicit Arguments(CommandArguments values) : values_(std::move(values)) {}
+  template <class T>
+  const T& get(const std::string& name) const {
+    return std::get<T>(values_.at(name));
+  }
+  double number(const std::string& name) const { return get<double>(name); }
+  bool flag(const std::string& name) const { return get<bool>(name); }
+  const std::string& text(const std::string& name) const { return get<std::string>(name); }
+  const Vec3& vector(const std::string& name) const { return get<Vec3>(name); }
+  const std::vector<double>& numbers(const std::string& name) const { return get<std::vector<double>>(name); }
+
+ private:
+  CommandArguments values_;
+};
+
+/// A copy of the document that a command may change; the editor takes it over when the command succeeds.
+struct Work {
+  HairMesh mesh;
+  EditState state;
+  const Surface* head = nullptr;
+  const Context& context;
+
+  Selection& selection() { return state.selection; }
+  /// The mirror plane's partners while symmetric editing is on; null otherwise.
+  Result<std::optional<Mirror>> mirror() const;
+  /// Moves vertices by displacements (one a vertex): frozen ones stay, partners follow when symmetric,
+  /// internal vertices among `asked` are pinned, since placement would take them back.
+  Status displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked);
+};
+
+struct Command {
+  CommandInfo info;
+  std::function<Status(Work&, const Arguments&)> run;
+};
+
+// One file each.
+std::vector<Command> selectCommands();
+std::vector<Command> meshCommands();
+std::vector<Command> moveCommands();
+std::vector<Command> settingCommands();
+
+/// Undo and redo, then all of the above; undo and redo have no `run`.
+const std::vector<Command>& commands();
+const Command* find(std::string_view name);
+/// Fills in defaults. Errors: InvalidArgument naming command and argument.
+Result<Arguments> complete(const Command& command, const CommandArguments& given);
+
+inline Error refuse(std::string why) {
+  return makeError(ErrorCode::InvalidArgument, std::move(why));
+}
+
+// Short forms for the tables.
+CommandArgument number(std::string name, double standard, double least, double most, std::string help);
+CommandArgument integer(std::string name, double standard, double least, double most, std::string help);
+CommandArgument flag(std::string name, bool standard, std::string help);
+CommandArgument choice(std::string name, std::vector<std::string> choices, std::string help);
+CommandArgument vector(std::string name, const Vec3& standard, std::string help);
+CommandArgument text(std::string name, std::string standard, std::string help);
+CommandArgument numbers(std::string name, std::string help);
+
+}  // namespace coif::editor

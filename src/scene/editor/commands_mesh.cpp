@@ -1,0 +1,271 @@
+// The topological operations as commands on the selection.
+#include <algorithm>
+#include <set>
+
+#include "scene/editor/command_table.h"
+
+namespace coif::editor {
+namespace {
+
+void selectCreated(Work& work, const Created& created) {
+  work.selection() = {};
+  if (!created.faces.empty()) {
+    work.selection().faces = created.faces;
+    return;
+  }
+  for (BundleId id : created.bundles) {
+    const std::uint32_t bundle = work.mesh.indexOf(id);
+    if (bundle != kNone) work.selection().faces.push_back({id, work.mesh.bundles()[bundle].height()});
+  }
+  if (created.bundles.empty()) work.selection().vertices = created.vertices;
+}
+
+Result<std::vector<BundleId>> bundlesOf(const Work& work) {
+  std::vector<BundleId> ids = selectedBundles(work.mesh, work.state.selection);
+  if (ids.empty()) return refuse("select faces first");
+  COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+  if (mirror) return withMirrored(work.mesh, *mirror, ids);
+  return ids;
+}
+
+/// The selected tips; a face below the tip is refused with a sentence.
+Result<std::vector<BundleId>> tipsOf(const Work& work, const char* what) {
+  for (const FaceRef& face : selectedFaces(work.mesh, work.state.selection)) {
+    const Bundle& bundle = work.mesh.bundles()[work.mesh.indexOf(face.bundle)];
+    const bool tipToo = std::ranges::binary_search(selectedFaces(work.mesh, work.state.selection),
+                                                   FaceRef{face.bundle, bundle.height()});
+    if (!tipToo) return refuse(std::string("only the last face of a bundle can be ") + what);
+  }
+  return bundlesOf(work);
+}
+
+Status extrude(Work& work, const Arguments& arguments) {
+  COIF_ASSIGN(const auto tips, tipsOf(work, "extruded"));
+  ExtrudeOptions options;
+  options.distance = arguments.number("distance");
+  if (!arguments.vector("direction").isZero(0)) options.direction = arguments.vector("direction");
+  COIF_ASSIGN(const Created created, extrudeFaces(work.mesh, tips, options));
+  selectCreated(work, created);
+  return {};
+}
+
+Status deleteTips(Work& work, const Arguments&) {
+  COIF_ASSIGN(const auto tips, tipsOf(work, "deleted"));
+  COIF_ASSIGN(const Created created, deleteFaces(work.mesh, tips));
+  (void)created;
+  work.selection() = {};
+  for (BundleId id : tips) {
+    const std::uint32_t bundle = work.mesh.indexOf(id);
+    if (bundle != kNone) work.selection().faces.push_back({id, work.mesh.bundles()[bundle].height()});
+  }
+  return {};
+}
+
+/// Runs a layer operation once for each connected part of each selected layer, from the tips down so that the
+/// layers still to come keep their numbers.
+template <class Operation>
+Status onLayers(Work& work, const Operation& operation) {
+  std::vector<FaceRef> faces = selectedFaces(work.mesh, work.selection());
+  if (faces.empty()) return refuse("select a face of the layer first");
+  COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+  if (mirror) {
+    for (const FaceRef& face : std::vector<FaceRef>(faces)) {
+      if (const auto other = mirrored(work.mesh, *mirror, face); other.ok()) faces.push_back(*other);
+    }
+  }
+  std::ranges::sort(faces, std::greater(), &FaceRef::layer);
+  std::set<FaceRef> done;
+  std::vector<FaceRef> made;
+  for (const FaceRef& face : faces) {
+    if (done.contains(face)) continue;
+    COIF_ASSIGN(const auto connected, connectedBundles(work.mesh, face.bundle, face.layer));
+    for (std::uint32_t bundle : connected) done.insert({work.mesh.bundles()[bundle].id, face.layer});
+    COIF_ASSIGN(const Created created, operation(work.mesh, face));
+    made.insert(made.end(), created.faces.begin(), created.faces.end());
+  }
+  work.selection() = {};
+  work.selection().faces = made;
+  return {};
+}
+
+/// Runs an operation on every selected edge and, when symmetric, on its partner. An edge that an earlier one
+/// took along is left out.
+template <class Operation>
+Status onEdges(Work& work, const Operation& operation) {
+  const std::vector<EdgeRef> edges = selectedEdges(work.mesh, work.selection());
+  if (edges.empty()) return refuse("select an edge first");
+  std::vector<VertexId> made;
+  for (const EdgeRef& edge : edges) {
+    const auto record = [&](HairMesh& mesh, EdgeRef ref) -> Status {
+      COIF_ASSIGN(const Created created, operation(mesh, ref));
+      made.insert(made.end(), created.vertices.begin(), created.vertices.end());
+      return {};
+    };
+    COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+    if (mirror && mirrored(work.mesh, *mirror, edge).ok()) {
+      COIF_TRY(applySymmetrically(work.mesh, *mirror, edge, record));
+    } else {
+      COIF_TRY(record(work.mesh, edge));
+    }
+  }
+  std::ranges::sort(made);
+  work.selection() = {made, {}, {}};
+  return {};
+}
+
+Status separateVertices(Work& work, const Arguments&) {
+  const std::vector<VertexId> ids = work.selection().vertices;
+  if (ids.empty()) return refuse("select vertices first");
+  std::vector<VertexId> made;
+  for (VertexId id : ids) {
+    COIF_ASSIGN(const Created created, separateVertex(work.mesh, id));
+    made.insert(made.end(), created.vertices.begin(), created.vertices.end());
+  }
+  std::ranges::sort(made);
+  work.selection() = {made, {}, {}};
+  return {};
+}
+
+WeldPosition weldPositionOf(const Arguments& arguments) {
+  return arguments.text("where") == "first" ? WeldPosition::First : WeldPosition::Average;
+}
+
+Status weldSelectedEdges(Work& work, const Arguments& arguments) {
+  const std::vector<EdgeRef> edges = work.selection().edges;
+  if (edges.size() != 2) return refuse("select the two edges to weld");
+  COIF_ASSIGN(const Created kept, weldEdges(work.mesh, edges[0], edges[1], weldPositionOf(arguments)));
+  work.selection() = {kept.vertices, {}, {}};
+  return {};
+}
+
+Status weldSelectedVertices(Work& work, const Arguments& arguments) {
+  const std::vector<VertexId> ids = work.selection().vertices;
+  if (ids.size() != 2) return refuse("select the two vertices to weld");
+  COIF_ASSIGN(const Created kept, weldVertices(work.mesh, ids[0], ids[1], weldPositionOf(arguments)));
+  work.selection() = {kept.vertices, {}, {}};
+  return {};
+}
+
+Status divideSelectedFace(Work& work, const Arguments&) {
+  const std::vector<VertexId> ids = work.selection().vertices;
+  if (ids.size() != 2) return refuse("select two vertices of the face to divide");
+  const std::uint32_t a = work.mesh.indexOf(ids[0]), b = work.mesh.indexOf(ids[1]);
+  for (const Bundle& bundle : work.mesh.bundles()) {
+    for (std::uint32_t layer = 0; layer <= bundle.height(); ++layer) {
+      const auto face = bundle.face(layer);
+      const auto cornerA = std::ranges::find(face, a), cornerB = std::ranges::find(face, b);
+      if (cornerA == face.end() || cornerB == face.end()) continue;
+      const BundleId id = bundle.id;
+      COIF_ASSIGN(const Created created, divideFace(work.mesh, id, std::uint32_t(cornerA - face.begin()),
+                                                    std::uint32_t(cornerB - face.begin())));
+      selectCreated(work, created);
+      return {};
+    }
+  }
+  return refuse("the two vertices have no face in common");
+}
+
+Status dissolveSelectedVertices(Work& work, const Arguments&) {
+  const std::vector<VertexId> ids = work.selection().vertices;
+  if (ids.empty()) return refuse("select root vertices first");
+  for (VertexId id : ids) {
+    COIF_ASSIGN(const Created created, dissolveVertex(work.mesh, id));
+    (void)created;
+  }
+  work.selection() = {};
+  return {};
+}
+
+Status subdivideSelected(Work& work, const Arguments& arguments) {
+  std::vector<BundleId> ids;
+  if (!work.selection().empty()) {
+    COIF_ASSIGN(ids, bundlesOf(work));
+  }
+  const bool loop = arguments.text("scheme") == "loop";
+  COIF_ASSIGN(const Created created,
+              subdivide(work.mesh, ids, loop ? SubdivisionScheme::Loop : SubdivisionScheme::CatmullClark));
+  selectCreated(work, created);
+  return {};
+}
+
+Status setGroup(Work& work, const Arguments& arguments) {
+  const std::string& name = arguments.text("name");
+  if (name.empty()) return refuse("a group needs a name");
+  COIF_ASSIGN(const auto ids, bundlesOf(work));
+  const std::uint32_t group = work.mesh.addGroup(name);
+  for (BundleId id : ids) work.mesh.setGroup(work.mesh.indexOf(id), group);
+  return {};
+}
+
+}  // namespace
+
+std::vector<Command> meshCommands() {
+  const CommandArgument where = choice("where", {"average", "first"}, "Where the welded vertices go.");
+  const CommandArgument along = number("t", 0.5, 1e-6, 1 - 1e-6, "Where between the two ends.");
+  std::vector<Command> list = {
+      {{"extrude",
+        "Extrude",
+        "Mesh",
+        "E",
+        "A new layer on each selected tip.",
+        {number("distance", 0.1, -1e6, 1e6, "Along the normal, scene units."),
+         vector("direction", Vec3::Zero(), "Instead, unless zero: the displacement, scene units.")}},
+       extrude},
+      {{"delete", "Delete", "Mesh", "X", "Removes the selected tips."}, deleteTips},
+      {{"insert_layer", "Insert layer", "Mesh", "I", "A layer before the selected faces' own.", {along}},
+       [](Work& work, const Arguments& arguments) {
+         const double t = arguments.number("t");
+         return onLayers(work, [t](HairMesh& mesh, FaceRef face) { return insertLayer(mesh, face, t); });
+       }},
+      {{"remove_layer", "Remove layer", "Mesh", "Ctrl+X", "Removes the selected faces' layer."},
+       [](Work& work, const Arguments&) {
+         return onLayers(work, [](HairMesh& mesh, FaceRef face) { return removeLayer(mesh, face); });
+       }},
+      {{"separate_edges", "Separate edges", "Mesh", "Y", "Parts the selected edges there and above."},
+       [](Work& work, const Arguments&) {
+         return onEdges(work, [](HairMesh& mesh, EdgeRef edge) { return separateEdge(mesh, edge); });
+       }},
+      {{"separate_vertices", "Separate vertices", "Mesh", "V", "Parts all faces at the selected vertices."},
+       separateVertices},
+      {{"weld_edges", "Weld edges", "Mesh", "Ctrl+Y", "Joins two parted edges there and below.", {where}},
+       weldSelectedEdges},
+      {{"weld_vertices",
+        "Weld vertices",
+        "Mesh",
+        "M",
+        "Joins two vertices of one root there and below.",
+        {where}},
+       weldSelectedVertices},
+      {{"divide_face", "Divide face", "Mesh", "J", "Splits a face between two of its corners."},
+       divideSelectedFace},
+      {{"divide_edges", "Divide edges", "Mesh", "Ctrl+E", "A vertex on the selected edges.", {along}},
+       [](Work& work, const Arguments& arguments) {
+         const double t = arguments.number("t");
+         return onEdges(work, [t](HairMesh& mesh, EdgeRef edge) { return divideEdge(mesh, edge, t); });
+       }},
+      {{"dissolve_edges", "Dissolve edges", "Mesh", "Ctrl+D", "Merges the bundles beside the edges."},
+       [](Work& work, const Arguments&) {
+         return onEdges(work, [](HairMesh& mesh, EdgeRef edge) { return dissolveEdge(mesh, edge); });
+       }},
+      {{"dissolve_vertices", "Dissolve vertices", "Mesh", "Shift+X", "Removes vertices between two edges."},
+       dissolveSelectedVertices},
+      {{"subdivide",
+        "Subdivide",
+        "Mesh",
+        "Ctrl+R",
+        "Refines the selected bundles, or all.",
+        {choice("scheme", {"catmull-clark", "loop"}, "How new vertices are placed.")}},
+       subdivideSelected},
+      {{"set_group",
+        "Put in group",
+        "Mesh",
+        "Ctrl+G",
+        "Puts the selected bundles into a group.",
+        {text("name", "hair", "The group; made if new.")}},
+       setGroup},
+  };
+  for (Command& command : list) command.info.changesMesh = true;
+  return list;
+}
+
+}  // namespace coif::editor

@@ -1,0 +1,191 @@
+#include "coif/scene/editor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "coif/place/place.h"
+#include "scene/editor/command_table.h"
+
+namespace coif {
+
+bool EditState::operator==(const EditState& o) const {
+  return selection == o.selection && hidden == o.hidden && frozen == o.frozen && symmetric == o.symmetric &&
+         mirrorPoint == o.mirrorPoint && mirrorNormal == o.mirrorNormal && strands == o.strands &&
+         look.azimuthDeg == o.look.azimuthDeg && look.elevationDeg == o.look.elevationDeg &&
+         look.hairColor == o.look.hairColor;
+}
+
+namespace {
+
+/// What the mesh no longer has is neither selected nor hidden nor frozen.
+void dropMissing(const HairMesh& mesh, EditState& state) {
+  state.selection = keepValid(mesh, std::move(state.selection));
+  std::erase_if(state.hidden, [&](BundleId id) { return mesh.indexOf(id) == kNone; });
+  std::erase_if(state.frozen, [&](VertexId id) { return mesh.indexOf(id) == kNone; });
+}
+
+}  // namespace
+
+Editor::Editor(Scene scene) : scene_(std::move(scene)) {
+  state_.strands = scene_.strands;
+  state_.look = scene_.look;
+}
+Editor::~Editor() = default;
+Editor::Editor(Editor&&) noexcept = default;
+Editor& Editor::operator=(Editor&&) noexcept = default;
+
+Status Editor::run(std::string_view name, const CommandArguments& given, const Context& context) {
+  const editor::Command* command = editor::find(name);
+  if (command == nullptr) {
+    return makeError(ErrorCode::NotFound, "there is no command '" + std::string(name) + "'");
+  }
+  COIF_ASSIGN(const editor::Arguments arguments, editor::complete(*command, given));
+  if (!command->run) return name == "undo" ? undo() : redo();
+
+  editor::Work work{scene_.hairMesh, state_, head_, context};
+  COIF_TRY(command->run(work, arguments));
+  const bool meshChanged = !(work.mesh == scene_.hairMesh);
+  if (meshChanged) {
+    COIF_ASSIGN(const PlaceReport placed, place(work.mesh, {}, context));
+    (void)placed;
+  }
+  dropMissing(work.mesh, work.state);
+  if (!meshChanged && work.state == state_) return {};
+
+  const std::size_t stepsOfMesh = history_.undoCount();
+  if (meshChanged) history_.record(scene_.hairMesh, work.mesh, command->info.label);
+  steps_.resize(done_);
+  const bool sharesState = !steps_.empty() && *steps_.back().after == state_;
+  Step step{command->info.label, pythonLine(name, given), history_.undoCount() > stepsOfMesh,
+            sharesState ? steps_.back().after : std::make_shared<const EditState>(state_), nullptr};
+  step.after = work.state == state_ ? step.before : std::make_shared<const EditState>(work.state);
+  steps_.push_back(std::move(step));
+  if (savedAt_ > done_) savedAt_ = std::size_t(-1);  // the saved state was undone and is now out of reach
+  ++done_;
+  scene_.hairMesh = std::move(work.mesh);
+  if (meshChanged) scene_.placedHash = meshHash(scene_.hairMesh);
+  adopt(work.state);
+  return {};
+}
+
+void Editor::adopt(const EditState& state) {
+  state_ = state;
+  scene_.strands = state_.strands;
+  scene_.look = state_.look;
+  ++revision_;
+}
+
+Status Editor::undo() {
+  if (done_ == 0) return makeError(ErrorCode::NotFound, "there is nothing to undo");
+  const Step& step = steps_[done_ - 1];
+  if (step.meshChanged) COIF_TRY(history_.undo(scene_.hairMesh));
+  --done_;
+  adopt(*step.before);
+  return {};
+}
+
+Status Editor::redo() {
+  if (done_ == steps_.size()) return makeError(ErrorCode::NotFound, "there is nothing to redo");
+  const Step& step = steps_[done_];
+  if (step.meshChanged) COIF_TRY(history_.redo(scene_.hairMesh));
+  ++done_;
+  adopt(*step.after);
+  return {};
+}
+
+std::string Editor::refusal(std::string_view name) const {
+  if (editor::find(name) == nullptr) return "there is no command '" + std::string(name) + "'";
+  if (name == "undo") return done_ == 0 ? "there is nothing to undo" : "";
+  if (name == "redo") return done_ == steps_.size() ? "there is nothing to redo" : "";
+  return {};
+}
+
+std::vector<std::string> Editor::stepLabels() const {
+  std::vector<std::string> labels;
+  for (const Step& step : steps_) labels.push_back(step.label);
+  return labels;
+}
+
+std::string Editor::pythonLog() const {
+  std::string log;
+  for (std::size_t i = 0; i < done_; ++i) log += steps_[i].python + "\n";
+  return log;
+}
+
+std::size_t Editor::historyBytes() const {
+  std::size_t bytes = history_.bytes();
+  for (const Step& step : steps_) {
+    bytes += sizeof step + step.label.size() + step.python.size() + sizeof(EditState) +
+             step.after->selection.size() * sizeof(EdgeRef);
+  }
+  return bytes;
+}
+
+Status Editor::save(const std::filesystem::path& path) {
+  COIF_TRY(saveScene(scene_, path));
+  savedAt_ = done_;
+  return {};
+}
+
+std::vector<std::byte> Editor::canonicalState() const {
+  std::vector<std::byte> bytes = canonicalBytes(scene_.hairMesh);
+  const auto put = [&](const auto& value) {
+    const auto* first = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof value);
+  };
+  const auto putAll = [&](const auto& list) {
+    put(std::uint64_t(list.size()));
+    for (const auto& item : list) put(item);
+  };
+  putAll(state_.selection.vertices);
+  putAll(state_.selection.edges);
+  putAll(state_.selection.faces);
+  putAll(state_.hidden);
+  putAll(state_.frozen);
+  put(state_.symmetric);
+  for (const Vec3& v : {state_.mirrorPoint, state_.mirrorNormal}) {
+    for (int i = 0; i < 3; ++i) put(v[i]);
+  }
+  const StrandSettings& s = state_.strands;
+  put(std::uint64_t(s.count)), put(s.points), put(s.tolerance), put(s.seed), put(s.knots), put(s.width);
+  put(s.tipWidth), put(state_.look.azimuthDeg), put(state_.look.elevationDeg);
+  for (int i = 0; i < 3; ++i) put(state_.look.hairColor[i]);
+  return bytes;
+}
+
+namespace editor {
+
+Result<std::optional<Mirror>> Work::mirror() const {
+  if (!state.symmetric) return std::optional<Mirror>();
+  double size = 0;
+  for (const HairVertex& v : mesh.vertices()) size = std::max(size, (v.position - state.mirrorPoint).norm());
+  // Partners are found within a thousandth of the mesh: closer than an artist places two vertices.
+  COIF_ASSIGN(Mirror found,
+              findMirror(mesh, state.mirrorPoint, state.mirrorNormal, std::max(1e-3 * size, 1e-12)));
+  return std::optional<Mirror>(std::move(found));
+}
+
+Status Work::displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked) {
+  for (VertexId id : state.frozen) displacements[mesh.indexOf(id)].setZero();
+  for (const Vec3& d : displacements) {
+    if (!d.allFinite()) return refuse("the move is not finite");
+  }
+  const std::vector<std::uint8_t> external = externalVertices(mesh);
+  COIF_ASSIGN(const std::optional<Mirror> partners, mirror());
+  const auto pin = [&](std::uint32_t v) {
+    if (v != kNone && !external[v]) mesh.setPinned(v, true);
+  };
+  for (std::uint32_t v : asked) {
+    if (displacements[v].isZero(0)) continue;
+    pin(v);
+    if (partners) pin(partners->vertexPartner[v]);
+  }
+  if (partners) return moveSymmetrically(mesh, *partners, displacements);
+  for (std::uint32_t v = 0; v < displacements.size(); ++v) {
+    mesh.setPosition(v, mesh.position(v) + displacements[v]);
+  }
+  return {};
+}
+
+}  // namespace editor
+}  // namespace coif
