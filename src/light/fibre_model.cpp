@@ -1,0 +1,164 @@
+#include "fibre_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "coif/light/hair_color.h"
+
+namespace coif {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kStrips = 96;               // over the fibre's width, even in the angle of the normal
+constexpr double kSmallestCosine = 1e-3;  // 1 / cos² of the difference angle stays below 1e6
+
+double within(double value, double low, double high) {
+  return value >= low ? std::min(value, high) : low;
+}
+
+FibreParameters withinRanges(FibreParameters p) {
+  for (int c = 0; c < 3; ++c) p.absorption[c] = within(p.absorption[c], 0, 1e30);
+  p.index = within(p.index, 1, 3);
+  p.longitudinalRoughness = within(p.longitudinalRoughness, 1e-3, 1);
+  p.azimuthalRoughness = within(p.azimuthalRoughness, 1e-3, 1);
+  p.tiltRad = within(p.tiltRad, -0.3, 0.3);
+  return p;
+}
+
+double varianceOf(double beta) {
+  const double deviation = 0.726 * beta + 0.812 * beta * beta + 3.7 * std::pow(beta, 20);
+  return deviation * deviation;
+}
+
+double logisticScaleOf(double beta) {
+  return std::sqrt(kPi / 8) * (0.265 * beta + 1.194 * beta * beta + 5.372 * std::pow(beta, 22));
+}
+
+double gaussian(double x, double variance) {
+  return std::exp(-x * x / (2 * variance)) / std::sqrt(2 * kPi * variance);
+}
+
+// cosⁿ x over its area on [−π/2, π/2].
+double cosinePower(double x, double n) {
+  const double cosine = std::cos(x);
+  if (cosine <= 0) return 0;
+  const double logArea = 0.5 * std::log(kPi) + std::lgamma(n / 2 + 0.5) - std::lgamma(n / 2 + 1);
+  return std::exp(n * std::log(cosine) - logArea);
+}
+
+Inclination difference(const Inclination& i, const Inclination& o) {
+  return Inclination::ofAngle((o.angle - i.angle) / 2);
+}
+
+// cos θ_i / cos² θ_diff: light of the specular cone, on the way to f · cos θ_i.
+double coneFactor(const Inclination& i, const Inclination& o) {
+  const double cosine = std::max(kSmallestCosine, difference(i, o).cos);
+  return i.cos / (cosine * cosine);
+}
+
+}  // namespace
+
+FibreModelTerms::FibreModelTerms(const FibreParameters& wanted)
+    : parameters(withinRanges(wanted)), azimuthalRoughness(logisticScaleOf(parameters.azimuthalRoughness)) {
+  const double v = varianceOf(parameters.longitudinalRoughness), tilt = parameters.tiltRad;
+  variances = {v, v / 4, 4 * v, 4 * v};
+  shifts = {-2 * tilt, tilt, 4 * tilt, 0};
+  kajiyaKay.fill(Vec3::Zero());
+  if (parameters.model == FibreModel::Marschner) shifts[2] = 3 * tilt;
+  if (parameters.model != FibreModel::KajiyaKay) return;
+  shifts.fill(0);
+  variances = {v, v, v, 1e4};  // of the diffuse part's proposal: M is then even over the sphere
+  kajiyaKayExponent = 1 / v;
+  const double specular = fresnel(1, parameters.index);
+  kajiyaKay[0] = Vec3::Constant(specular);
+  kajiyaKay[3] = (1 - specular) * albedoFromAbsorption(parameters.absorption, parameters.azimuthalRoughness);
+}
+
+Inclination FibreModelTerms::tilted(int lobe, const Inclination& o) const {
+  return shifts[lobe] == 0 ? o : Inclination::ofAngle(o.angle - shifts[lobe]);
+}
+
+double FibreModelTerms::longitudinal(int lobe, const Inclination& i, const Inclination& o,
+                                     double extraVariance) const {
+  const double variance = variances[lobe] + extraVariance;
+  switch (parameters.model) {
+    case FibreModel::Chiang:
+      return longitudinalDensity(i, tilted(lobe, o), variance);
+    case FibreModel::Marschner:
+      if (lobe == 3) return 0;
+      return gaussian(i.angle + o.angle - shifts[lobe], variance) * coneFactor(i, o);
+    case FibreModel::KajiyaKay:
+      if (lobe == 3) return i.cos * 2 / kPi;
+      if (lobe != 0) return 0;
+      return cosinePower(i.angle + o.angle, 1 / variance) * coneFactor(i, o);
+  }
+  return 0;
+}
+
+Crossing FibreModelTerms::cross(const Inclination& i, const Inclination& o, double h) const {
+  if (parameters.model == FibreModel::KajiyaKay) return {kajiyaKay, 0, 0};
+  const bool near = parameters.model == FibreModel::Chiang;
+  return crossFibre(near ? o : difference(i, o), h, parameters.index, parameters.absorption);
+}
+
+double FibreModelTerms::azimuth(int lobe, const Crossing& crossing, double phi) const {
+  if (isotropic(lobe)) return 1 / (2 * kPi);
+  return azimuthalRoughness.density(phi - crossing.azimuth(lobe));
+}
+
+std::array<Vec3, 4> FibreModelTerms::meanAzimuth(const Inclination& i, const Inclination& o,
+                                                 double phi) const {
+  if (parameters.model == FibreModel::KajiyaKay) {
+    std::array<Vec3, 4> even = kajiyaKay;
+    for (Vec3& value : even) value /= 2 * kPi;
+    return even;
+  }
+  std::array<Vec3, 4> sum;
+  sum.fill(Vec3::Zero());
+  std::array<double, 3> low{};
+  for (int strip = 0; strip <= kStrips; ++strip) {
+    const double edge = std::sin(kPi * (double(strip) / kStrips - 0.5));
+    const Crossing border = cross(i, o, edge);
+    std::array<double, 3> high{};
+    for (int p = 0; p < 3; ++p) high[p] = phi - border.azimuth(p);
+    if (strip > 0) {
+      const double edgeBefore = std::sin(kPi * (double(strip - 1) / kStrips - 0.5));
+      const Crossing middle = cross(i, o, std::sin(kPi * ((strip - 0.5) / kStrips - 0.5)));
+      const double share = (edge - edgeBefore) / 2;
+      for (int p = 0; p < 3; ++p) {
+        sum[p] += middle.attenuation[p] * (share * azimuthalRoughness.meanDensity(low[p], high[p]));
+      }
+      sum[3] += middle.attenuation[3] * (share / (2 * kPi));
+    }
+    low = high;
+  }
+  return sum;
+}
+
+std::array<double, 4> FibreModelTerms::chances(const Inclination& o, double h) const {
+  // Light on the specular cone has θ_i = −θ_o, for which the difference angle is θ_o itself.
+  const Crossing crossing = cross(Inclination{-o.angle, -o.sin, o.cos}, o, h);
+  std::array<double, 4> out;
+  double sum = 0;
+  const int lobes = parameters.model == FibreModel::Marschner ? 3 : 4;
+  for (int p = 0; p < 4; ++p) sum += out[p] = p < lobes ? crossing.attenuation[p].sum() : 0;
+  if (!(sum > 1e-300)) return {1, 0, 0, 0};  // all is absorbed: any direction will do
+  for (double& chance : out) chance /= sum;
+  return out;
+}
+
+double FibreModelTerms::proposal(int lobe, const Inclination& i, const Inclination& o) const {
+  return longitudinalDensity(i, tilted(lobe, o), variances[lobe]);
+}
+
+Inclination FibreModelTerms::sampleInclination(int lobe, const Inclination& o, double u1, double u2) const {
+  return sampleLongitudinal(tilted(lobe, o), variances[lobe], u1, u2);
+}
+
+double FibreModelTerms::sampleAzimuth(int lobe, const Crossing& crossing, double u) const {
+  if (isotropic(lobe)) return 2 * kPi * u;
+  return crossing.azimuth(lobe) + azimuthalRoughness.sample(u);
+}
+
+}  // namespace coif

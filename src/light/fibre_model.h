@@ -1,0 +1,39 @@
+// One fibre model: the factors of its lobes, and the proposals by which they are sampled.
+#pragma once
+
+#include "coif/light/fibre.h"
+#include "fibre_terms.h"
+
+namespace coif {
+
+/// Lobes are numbered as in FibreLobe. The scattering function is
+/// Σ longitudinal(p) · attenuation[p] · azimuth(p); drawn from Σ chances[p] · proposal(p) · azimuth(p).
+struct FibreModelTerms {
+  FibreParameters parameters;       ///< within their ranges
+  std::array<double, 4> variances;  ///< over θ_i + θ_o
+  std::array<double, 4> shifts;     ///< of θ_i + θ_o
+  TrimmedLogistic azimuthalRoughness;
+  std::array<Vec3, 4> kajiyaKay;  ///< what its lobes leave of the light
+  double kajiyaKayExponent = 1;
+
+  explicit FibreModelTerms(const FibreParameters& wanted);
+
+  double longitudinal(int lobe, const Inclination& i, const Inclination& o, double extraVariance) const;
+  /// Attenuation and azimuths at offset h: of θ_o (Chiang), of the difference angle (Marschner).
+  Crossing cross(const Inclination& i, const Inclination& o, double h) const;
+  /// Density over φ = φ_i − φ_o.
+  double azimuth(int lobe, const Crossing& crossing, double phi) const;
+  /// ∫ attenuation · azimuth dh / 2 of every lobe.
+  std::array<Vec3, 4> meanAzimuth(const Inclination& i, const Inclination& o, double phi) const;
+
+  std::array<double, 4> chances(const Inclination& o, double h) const;
+  double proposal(int lobe, const Inclination& i, const Inclination& o) const;
+  Inclination sampleInclination(int lobe, const Inclination& o, double u1, double u2) const;
+  double sampleAzimuth(int lobe, const Crossing& crossing, double u) const;
+
+ private:
+  bool isotropic(int lobe) const { return lobe == 3 || parameters.model == FibreModel::KajiyaKay; }
+  Inclination tilted(int lobe, const Inclination& o) const;
+};
+
+}  // namespace coif
