@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ struct Work {
 
   Selection& selection() { return state.selection; }
   /// The mirror plane's partners while symmetric editing is on; null otherwise.
-  Result<std::optional<Mirror>> mirror() const;
+  Result<std::unique_ptr<Mirror>> mirror() const;
   /// Moves vertices by displacements (one a vertex): frozen ones stay, partners follow when symmetric,
   /// internal vertices among `asked` are pinned, since placement would take them back.
   Status displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked);

@@ -23,7 +23,7 @@ void selectCreated(Work& work, const Created& created) {
 Result<std::vector<BundleId>> bundlesOf(const Work& work) {
   std::vector<BundleId> ids = selectedBundles(work.mesh, work.state.selection);
   if (ids.empty()) return refuse("select faces first");
-  COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+  COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
   if (mirror) return withMirrored(work.mesh, *mirror, ids);
   return ids;
 }
@@ -67,7 +67,7 @@ template <class Operation>
 Status onLayers(Work& work, const Operation& operation) {
   std::vector<FaceRef> faces = selectedFaces(work.mesh, work.selection());
   if (faces.empty()) return refuse("select a face of the layer first");
-  COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+  COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
   if (mirror) {
     for (const FaceRef& face : std::vector<FaceRef>(faces)) {
       if (const auto other = mirrored(work.mesh, *mirror, face); other.ok()) faces.push_back(*other);
@@ -101,7 +101,7 @@ Status onEdges(Work& work, const Operation& operation) {
       made.insert(made.end(), created.vertices.begin(), created.vertices.end());
       return {};
     };
-    COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+    COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
     if (mirror && mirrored(work.mesh, *mirror, edge).ok()) {
       COIF_TRY(applySymmetrically(work.mesh, *mirror, edge, record));
     } else {

@@ -138,7 +138,7 @@ std::function<Status(Work&, const Arguments&)> pinning(bool pinned) {
 
 Status makeSymmetric(Work& work, const Arguments&) {
   if (!work.state.symmetric) return refuse("turn symmetry on first");
-  COIF_ASSIGN(const std::optional<Mirror> mirror, work.mirror());
+  COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
   COIF_ASSIGN(const std::size_t without, symmetrise(work.mesh, *mirror));
   (void)without;
   return {};

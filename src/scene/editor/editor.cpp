@@ -155,14 +155,14 @@ std::vector<std::byte> Editor::canonicalState() const {
 
 namespace editor {
 
-Result<std::optional<Mirror>> Work::mirror() const {
-  if (!state.symmetric) return std::optional<Mirror>();
+Result<std::unique_ptr<Mirror>> Work::mirror() const {
+  if (!state.symmetric) return std::unique_ptr<Mirror>();
   double size = 0;
   for (const HairVertex& v : mesh.vertices()) size = std::max(size, (v.position - state.mirrorPoint).norm());
   // Partners are found within a thousandth of the mesh: closer than an artist places two vertices.
   COIF_ASSIGN(Mirror found,
               findMirror(mesh, state.mirrorPoint, state.mirrorNormal, std::max(1e-3 * size, 1e-12)));
-  return std::optional<Mirror>(std::move(found));
+  return std::make_unique<Mirror>(std::move(found));
 }
 
 Status Work::displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked) {
@@ -171,7 +171,7 @@ Status Work::displace(std::vector<Vec3> displacements, std::span<const std::uint
     if (!d.allFinite()) return refuse("the move is not finite");
   }
   const std::vector<std::uint8_t> external = externalVertices(mesh);
-  COIF_ASSIGN(const std::optional<Mirror> partners, mirror());
+  COIF_ASSIGN(const std::unique_ptr<Mirror> partners, mirror());
   const auto pin = [&](std::uint32_t v) {
     if (v != kNone && !external[v]) mesh.setPinned(v, true);
   };
