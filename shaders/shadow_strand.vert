@@ -3,7 +3,7 @@
 #include "strand_buffer.glsl"
 out float coverage;
 void main() {
-  StrandPoint p = strandPoints[gl_VertexID >> 1];
+  StrandPoint p = strandPointAt(gl_VertexID >> 1);
   float ribbon = max(p.positionWidth.w, shadowInfo.z);
   coverage = p.positionWidth.w / ribbon;
   vec3 side = cross(p.tangentSeed.xyz, lightDirection[0].xyz);

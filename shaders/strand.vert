@@ -15,7 +15,7 @@ flat out uint seed;
 vec3 throughHair(float depth, vec3 c) { return exp(-depth * shadowRight.w * (1.0 - 0.72 * pow(c, vec3(0.38)))); }
 
 void main() {
-  StrandPoint p = strandPoints[gl_VertexID >> 1];
+  StrandPoint p = strandPointAt(gl_VertexID >> 1);
   seed = floatBitsToUint(p.tangentSeed.w);
   vec3 worldPosition = p.positionWidth.xyz, tangent = p.tangentSeed.xyz;
   vec3 toEye = eye.xyz - worldPosition;

@@ -1,7 +1,46 @@
-// One record a strand point; the index names (point, side): vertex v is side v & 1 of point v >> 1.
+// Strand points as the passes see them: the index names (point, side), vertex v is side v & 1 of point v >> 1.
+// Passes call strandPointAt and know nothing of how points are kept or made (synthesis.glsl).
 struct StrandPoint {
   vec4 positionWidth;   // diameter in w
-  vec4 tangentSeed;     // unit tangent; strand seed as bits in w
+  vec4 tangentSeed;     // unit tangent, or zero; strand seed as bits in w
   vec4 colorAlong;      // linear RGB; 0 at the root … 1 at the tip
 };
-layout(std430, binding = 0) readonly buffer StrandPoints { StrandPoint strandPoints[]; };
+struct PackedPoint {
+  vec4 positionWidth;
+  uint tangent;         // octahedral, 2 × 16 bits
+  uint seed;
+  uint redGreen;        // 2 × half
+  uint blueAlong;
+};
+const uint kNoTangent = 0x80008000u;  // packSnorm2x16 never makes it
+
+uint packTangent(vec3 t) {
+  float size = dot(abs(t), vec3(1));
+  if (!(size > 0.0)) return kNoTangent;
+  vec2 o = t.xy / size;
+  if (t.z < 0.0) o = (1.0 - abs(o.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(o, vec2(0)));
+  return packSnorm2x16(o);
+}
+vec3 unpackTangent(uint bits) {
+  if (bits == kNoTangent) return vec3(0);
+  vec2 o = unpackSnorm2x16(bits);
+  vec3 t = vec3(o, 1.0 - abs(o.x) - abs(o.y));
+  if (t.z < 0.0) t.xy = (1.0 - abs(o.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(o, vec2(0)));
+  return normalize(t);
+}
+PackedPoint packPoint(StrandPoint p) {
+  return PackedPoint(p.positionWidth, packTangent(p.tangentSeed.xyz), floatBitsToUint(p.tangentSeed.w),
+                     packHalf2x16(p.colorAlong.xy), packHalf2x16(p.colorAlong.zw));
+}
+StrandPoint unpackPoint(PackedPoint p) {
+  return StrandPoint(p.positionWidth, vec4(unpackTangent(p.tangent), uintBitsToFloat(p.seed)),
+                     vec4(unpackHalf2x16(p.redGreen), unpackHalf2x16(p.blueAlong)));
+}
+
+#ifdef SYNTHESISE_IN_PLACE
+#include "synthesis.glsl"
+StrandPoint strandPointAt(int point) { return synthesise(placeOf(uint(point))); }
+#else
+layout(std430, binding = 0) readonly buffer StrandPoints { PackedPoint strandPoints[]; };
+StrandPoint strandPointAt(int point) { return unpackPoint(strandPoints[point]); }
+#endif

@@ -38,6 +38,8 @@ Result<View> makeView(const Camera& camera, const Box& scene, int width, int hei
 
 /// View, projection, lights and colours; shadows and volume are left empty. `jitter` in pixels.
 FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions& options);
+/// Copies what a shadow pass fills.
+void copyShadowFields(const FrameData& from, FrameData& to);
 Mat4f clipFromWorld(const View& view, const Vec2& jitter);
 
 /// A point of low discrepancy in [-1/2, 1/2)², the first at the pixel's middle.

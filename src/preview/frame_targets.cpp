@@ -27,8 +27,11 @@ Result<FrameTargets> FrameTargets::create(int width, int height) {
       return makeError(ErrorCode::TooLarge, "the driver cannot hold a picture of this size");
     }
   }
-  glClearTexImage(t.sum_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
   return t;
+}
+
+void FrameTargets::clear() const {
+  glClearTexImage(sum_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
 }
 
 void FrameTargets::begin() const {

@@ -25,6 +25,7 @@ HeadBuffers::HeadBuffers(const PolygonMesh& head) : array_(makeVertexArray()) {
     vertices[v] = {head.positions[v].cast<float>(), normals[v].stableNormalized().cast<float>()};
   }
   count_ = GLsizei(indices.size());
+  bytes_ = vertices.size() * sizeof(Vertex) + indices.size() * 4;
   vertices_ = makeBuffer(std::span<const Vertex>(vertices));
   indices_ = makeBuffer(std::span<const std::uint32_t>(indices));
   glVertexArrayVertexBuffer(array_.name(), 0, vertices_.name(), 0, sizeof(Vertex));

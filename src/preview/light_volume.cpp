@@ -31,12 +31,12 @@ LightVolume makeGrid(const Box& box) {
   return grid;
 }
 
-std::vector<float> hairOpticalSize(const LightVolume& grid, const StrandGeometry& strands) {
+std::vector<float> hairOpticalSize(const LightVolume& grid, const CoarseStrands& strands) {
   std::vector<float> optical(std::size_t(grid.nx) * grid.ny * grid.nz, 0.0f);
   const double perCell = 0.25 * 3.14159265358979323846 / (grid.cell * grid.cell);
   for (std::size_t s = 0; s + 1 < strands.starts.size(); ++s) {
     for (std::uint32_t i = strands.starts[s]; i + 1 < strands.starts[s + 1]; ++i) {
-      const StrandPoint &a = strands.points[i], &b = strands.points[i + 1];
+      const CoarseStrands::Point &a = strands.points[i], &b = strands.points[i + 1];
       const Vec3 from = a.position.cast<double>(), d = b.position.cast<double>() - from;
       const double length = d.norm();
       const int steps = 1 + int(std::min(length / (0.7 * grid.cell), 1000.0));
@@ -136,7 +136,7 @@ std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const fl
   return result;
 }
 
-LightVolumes makeLightVolumes(const StrandGeometry& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
+LightVolumes makeLightVolumes(const CoarseStrands& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
                               const Vec3& up, const Context& context) {
   LightVolumes result;
   if (strands.points.empty()) return result;

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "coif/base/context.h"
-#include "preview/strand_geometry.h"
+#include "preview/frame_data.h"
+#include "preview/hair_model.h"
 
 namespace coif::preview {
 
@@ -28,7 +29,7 @@ struct LightVolumes {
 /// direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear in the
 /// number of cells. `lights` are unit vectors towards the light, `up` the sky's middle. Deterministic for any
 /// number of threads.
-LightVolumes makeLightVolumes(const StrandGeometry& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
+LightVolumes makeLightVolumes(const CoarseStrands& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
                               const Vec3& up, const Context& context);
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.

@@ -47,6 +47,7 @@ OverlayPass::OverlayPass(const HairMesh& mesh) : array_(makeVertexArray()) {
   }
   faceVertices_ = GLsizei(faces.size());
   edgeVertices_ = GLsizei(3 * edges.size());
+  bytes_ = (faces.size() + edges.size()) * sizeof(OverlayVertex);
   faces_ = makeBuffer(std::span<const OverlayVertex>(faces));
   edges_ = makeBuffer(std::span<const OverlayVertex>(edges));
 }

@@ -8,53 +8,35 @@
 #include "preview/gl_objects.h"
 #include "preview/light_volume.h"
 #include "preview/program.h"
-#include "preview/strand_geometry.h"
+#include "preview/synthesis.h"
 
 namespace coif::preview {
 
 inline constexpr int kSamples = 4;  // a pixel and sub-frame; every driver of OpenGL 4.5 has four
-
-/// The linked programs, by ProgramId.
-class Programs {
- public:
-  static Result<Programs> build();
-  GLuint operator[](ProgramId id) const { return programs_[std::size_t(id)].name(); }
-
- private:
-  std::vector<Program> programs_;
-};
-
-/// The strands of a picture on the GPU.
-class StrandBuffers {
- public:
-  explicit StrandBuffers(const StrandGeometry& geometry);
-  /// All ribbons, with the bound program.
-  void draw() const;
-
- private:
-  Buffer points_, indices_;
-  VertexArray array_;
-  GLsizei count_ = 0;
-};
 
 /// The head as triangles with smooth normals.
 class HeadBuffers {
  public:
   explicit HeadBuffers(const PolygonMesh& head);
   void draw() const;
+  std::size_t bytes() const { return bytes_; }
 
  private:
+  std::size_t bytes_ = 0;
   Buffer vertices_, indices_;
   VertexArray array_;
   GLsizei count_ = 0;
 };
+
+/// Fills the fields of `frame` that place the key light's map over the scene.
+void placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame);
 
 /// Visibility from the key light (deep opacity maps of four layers over the head's depth map) and the light
 /// volumes. Texture units 0 … 3 as shaders/visibility.glsl names them.
 class ShadowPass {
  public:
   /// Fills the shadow and volume fields of `frame`; a null geometry or head is left out.
-  ShadowPass(const Programs& programs, const Box& scene, const StrandGeometry* strands,
+  ShadowPass(const Programs& programs, const Box& scene, const CoarseStrands* strands,
              const StrandBuffers* buffers, const PolygonMesh* head, const HeadBuffers* headBuffers,
              FrameData& frame, Buffer& frameBuffer, int mapSize, const Context& context);
   void bindForHair() const { bind(withHead_); }
@@ -70,8 +52,10 @@ class OverlayPass {
  public:
   explicit OverlayPass(const HairMesh& mesh);
   void draw(const Programs& programs) const;
+  std::size_t bytes() const { return bytes_; }
 
  private:
+  std::size_t bytes_ = 0;
   Buffer faces_, edges_;
   VertexArray array_;
   GLsizei faceVertices_ = 0, edgeVertices_ = 0;
@@ -81,6 +65,7 @@ class OverlayPass {
 class FrameTargets {
  public:
   static Result<FrameTargets> create(int width, int height);
+  void clear() const;  ///< the sum of the sub-frames
   void begin() const;  ///< binds and clears the sub-frame
   void accumulate(const Programs& programs, const VertexArray& empty) const;
   Image finish(const Programs& programs, const VertexArray& empty, int subframes) const;

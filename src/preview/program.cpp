@@ -59,11 +59,19 @@ Result<GLuint> compile(GLenum stage, const std::string& name, std::span<const st
 
 std::span<const ProgramSource> allPrograms() {
   static const std::vector<ProgramSource> programs = {
-      {"fullscreen.vert", "backdrop.frag", {}},         {"head.vert", "head.frag", {}},
-      {"strand.vert", "strand.frag", {"SHADOWS"}},      {"strand.vert", "strand.frag", {}},
-      {"shadow_head.vert", "shadow_depth.frag", {}},    {"shadow_strand.vert", "shadow_depth.frag", {}},
-      {"shadow_strand.vert", "shadow_layers.frag", {}}, {"overlay.vert", "overlay.frag", {}},
-      {"fullscreen.vert", "resolve.frag", {}},          {"fullscreen.vert", "finish.frag", {}},
+      {"fullscreen.vert", "backdrop.frag", {}},
+      {"head.vert", "head.frag", {}},
+      {"strand.vert", "strand.frag", {"SHADOWS"}},
+      {"strand.vert", "strand.frag", {}},
+      {"shadow_head.vert", "shadow_depth.frag", {}},
+      {"shadow_strand.vert", "shadow_depth.frag", {}},
+      {"shadow_strand.vert", "shadow_layers.frag", {}},
+      {"overlay.vert", "overlay.frag", {}},
+      {"fullscreen.vert", "resolve.frag", {}},
+      {"fullscreen.vert", "finish.frag", {}},
+      {"strand_columns.comp", "", {}},
+      {"strand_points.comp", "", {}},
+      {"strand_points.comp", "", {"IMPORTED"}},
   };
   return programs;
 }
@@ -77,25 +85,38 @@ Result<std::string> shaderText(const std::string& name, std::span<const std::str
 }
 
 Result<Program> buildProgram(const ProgramSource& source) {
-  COIF_ASSIGN(const GLuint vertex, compile(GL_VERTEX_SHADER, source.vertex, source.defines));
-  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, source.fragment, source.defines);
-  if (!fragment.ok()) {
-    glDeleteShader(vertex);
-    return fragment.error();
-  }
+  const bool compute = source.fragment.empty();
   Program program(glCreateProgram());
-  glAttachShader(program.name(), vertex);
-  glAttachShader(program.name(), *fragment);
+  for (const bool first : {true, false}) {
+    if (compute && !first) continue;
+    const GLenum stage = compute ? GL_COMPUTE_SHADER : first ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER;
+    COIF_ASSIGN(const GLuint shader, compile(stage, first ? source.vertex : source.fragment, source.defines));
+    glAttachShader(program.name(), shader);
+    glDeleteShader(shader);  // it lives as long as the program
+  }
   glLinkProgram(program.name());
-  glDeleteShader(vertex);
-  glDeleteShader(*fragment);
   GLint ok = 0;
   glGetProgramiv(program.name(), GL_LINK_STATUS, &ok);
   if (ok) return program;
   char log[2000] = "";
   glGetProgramInfoLog(program.name(), sizeof log, nullptr, log);
   return makeError(ErrorCode::Malformed, std::string("the program does not link: ") + log, {},
-                   source.vertex + " + " + source.fragment);
+                   source.vertex + (compute ? "" : " + " + source.fragment));
+}
+
+Programs::Programs() : programs_(allPrograms().size()) {}
+
+GLuint Programs::operator[](ProgramId id) const {
+  Program& program = programs_[std::size_t(id)];
+  if (program.name() == 0 && error_.ok()) {
+    Result<Program> built = buildProgram(allPrograms()[std::size_t(id)]);
+    if (built.ok()) {
+      program = *std::move(built);
+    } else {
+      error_ = built.error();
+    }
+  }
+  return program.name();
 }
 
 }  // namespace coif::preview

@@ -12,7 +12,7 @@ namespace coif::preview {
 
 /// One program: its files and the macros that choose the permutation.
 struct ProgramSource {
-  std::string vertex, fragment;      ///< file names in shaders/
+  std::string vertex, fragment;      ///< file names in shaders/; a compute shader has no fragment file
   std::vector<std::string> defines;  ///< "NAME" or "NAME value"
 };
 
@@ -27,13 +27,29 @@ enum class ProgramId {
   ShadowLayers,
   Overlay,
   Resolve,
-  Finish
+  Finish,
+  StrandColumns,
+  StrandPoints,
+  StrandPointsImported,
 };
 std::span<const ProgramSource> allPrograms();
 
 /// A shader's whole text: from COIF_SHADER_DIR where set, else embedded; `#include "name"` lines expanded
 /// once a file, the macros put after #version. Errors: NotFound.
 Result<std::string> shaderText(const std::string& name, std::span<const std::string> defines);
+
+/// The linked programs, each compiled when it is first asked for: what a scene does not use is not compiled.
+class Programs {
+ public:
+  Programs();
+  /// 0 where it does not compile; error() then says why.
+  GLuint operator[](ProgramId id) const;
+  const Status& error() const { return error_; }
+
+ private:
+  mutable std::vector<Program> programs_;
+  mutable Status error_;
+};
 
 /// Compiles and links. Errors: NotFound, Malformed with the driver's log and the file's name.
 Result<Program> buildProgram(const ProgramSource& source);

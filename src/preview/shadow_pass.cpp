@@ -40,8 +40,10 @@ Framebuffer depthTarget(const Texture& depth) {
   return target;
 }
 
+}  // namespace
+
 // The map covers the scene's bounding sphere.
-void placeMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame) {
+void placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame) {
   const Vec3 toLight = frame.lightDirection[0].head<3>().cast<double>().normalized();
   const Vec3 right = toLight.unitOrthogonal(), up = toLight.cross(right);
   const Vec3 centre = 0.5 * (scene.lo + scene.hi);
@@ -60,12 +62,10 @@ void placeMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame) 
   frame.shadowUp = Vec4f(float(up.x()), float(up.y()), float(up.z()), 0);
 }
 
-}  // namespace
-
-ShadowPass::ShadowPass(const Programs& programs, const Box& scene, const StrandGeometry* strands,
+ShadowPass::ShadowPass(const Programs& programs, const Box& scene, const CoarseStrands* strands,
                        const StrandBuffers* buffers, const PolygonMesh* head, const HeadBuffers* headBuffers,
                        FrameData& frame, Buffer& frameBuffer, int mapSize, const Context& context) {
-  placeMap(scene, strands != nullptr ? strands->box : scene, mapSize, frame);
+  placeShadowMap(scene, strands != nullptr ? strands->box : scene, mapSize, frame);
   LightVolumes volumes;
   if (strands != nullptr) {
     const Vec3 lights[3] = {frame.lightDirection[0].head<3>().cast<double>(),

@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "coif/base/context.h"
+#include "coif/base/report.h"
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/light/camera.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
 #include "coif/scalp/polygon_mesh.h"
+#include "coif/strands/catmull_rom.h"
 #include "coif/strands/strand_set.h"
 
 namespace coif {
@@ -23,6 +25,9 @@ namespace coif {
 /// What to show. Pointers may be null and must outlive the call.
 struct PreviewScene {
   const StrandSet* strands = nullptr;
+  const HairMesh* grownOn =
+      nullptr;                   ///< `strands` are as grow() made them on this: the GPU makes their points
+  Knots knots = Knots::Uniform;  ///< of grownOn
   const PolygonMesh* head = nullptr;
   const HairMesh* hairMesh = nullptr;  ///< drawn over the picture: edges and faces, coloured by layer
   Camera camera;
@@ -37,8 +42,21 @@ struct PreviewOptions {
   Vec3f backgroundTop = Vec3f(0.135f, 0.145f, 0.165f), backgroundBottom = Vec3f(0.03f, 0.032f, 0.037f);
   bool transparentBackground = false;  ///< alpha is then the coverage
   bool shadows = true;
-  bool lod = true;              ///< fewer, wider strands and fewer points where no one could tell
+  bool lod = true;  ///< fewer, wider strands and fewer points where no one could tell
+  double strandFraction =
+      0;  ///< with lod: part of the strands to draw, 0 … 1; 0: by their width on the screen
   std::size_t maxSegments = 0;  ///< with lod: bound on ribbon segments; 0: by the machine
+  bool keep = true;             ///< false: a session makes everything again, as if all had changed
+  bool measure = false;         ///< wait for the GPU after each stage, so that its seconds are its own
+};
+
+/// Bytes that went to the GPU for a picture.
+struct PreviewUpload {
+  std::uint64_t strands = 0;   ///< roots, weights, points that came as points, colours, topology
+  std::uint64_t hairMesh = 0;  ///< its vertices
+  std::uint64_t head = 0, overlay = 0;
+  std::uint64_t plan = 0;   ///< which strands and samples are drawn: by bundle, not by strand
+  std::uint64_t frame = 0;  ///< camera, lights and colours
 };
 
 struct Picture {
@@ -48,6 +66,8 @@ struct Picture {
   double widthScale = 1;           ///< by how much the level of detail widened the strands
   double seconds = 0;
   std::vector<std::string> notes;  ///< a sentence each
+  PreviewUpload uploaded;
+  std::vector<StageReport> stages;  ///< what ran, what was kept, what was left out, and why
 };
 
 /// Owns an OpenGL context of its own; made current on the calling thread during a call and released after.
@@ -55,17 +75,19 @@ struct Picture {
 class Preview {
  public:
   /// A context without a window: a GPU through EGL_EXT_platform_device where there is one, else Mesa's
-  /// surfaceless platform. COIF_PREVIEW_DEVICE=software skips the GPU. Shaders come from the library, or from
-  /// COIF_SHADER_DIR where that is set. Errors: Unsupported (no EGL, no OpenGL 4.5), Malformed (a shader does
-  /// not compile, with its log), NotFound (COIF_SHADER_DIR lacks a file).
+  /// surfaceless platform. COIF_PREVIEW_DEVICE=software skips the GPU. Errors: Unsupported (no EGL, no
+  /// OpenGL 4.5).
   static Result<Preview> create();
   Preview(Preview&&) noexcept;
   Preview& operator=(Preview&&) noexcept;
   ~Preview();
 
-  /// Same scene, same options, same machine: same bytes. Errors: InvalidArgument (sizes, camera), Degenerate
-  /// (a head that fails validate), TooLarge (the driver's limit), Cancelled. Cost without a GPU: some 10 s of
-  /// processor time for 1024² with 100 000 strands, shared by the cores.
+  /// One picture, and nothing kept; PreviewSession keeps. Same scene, same options, same machine: same bytes.
+  /// Shaders come from the library, or from COIF_SHADER_DIR where that is set, and are compiled when first
+  /// used. Errors: InvalidArgument (sizes, camera), Degenerate (a head that fails validate), TooLarge (the
+  /// driver's limit), Malformed (a shader does not compile, with its log), NotFound (COIF_SHADER_DIR lacks a
+  /// file), Cancelled. Cost without a GPU: some 10 s of processor time for 1024² with 100 000 strands, shared
+  /// by the cores.
   Result<Picture> render(const PreviewScene& scene, const PreviewOptions& options = {},
                          const Context& context = {});
 
@@ -73,6 +95,7 @@ class Preview {
   bool software() const;
 
  private:
+  friend class PreviewSession;
   struct Impl;
   explicit Preview(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

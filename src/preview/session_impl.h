@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include "coif/preview/session.h"
+#include "preview/device.h"
+#include "preview/passes.h"
+
+namespace coif {
+
+using namespace preview;
+
+/// What a session shows, what of it is on the GPU, and for what that was made.
+struct PreviewSession::Impl {
+  std::shared_ptr<Device> device;
+
+  // What to show. A null GPU object below means: not uploaded yet.
+  Camera camera;
+  Lights lights;
+  std::shared_ptr<const PolygonMesh> head;
+  std::optional<HairMesh> overlay;
+  std::optional<PreparedHair> hair;
+  bool hairMoved = false;  ///< the mesh on the GPU is older than the model's
+
+  std::unique_ptr<HeadBuffers> headBuffers;
+  std::unique_ptr<OverlayPass> overlayPass;
+  std::unique_ptr<HairBuffers> hairBuffers;
+  std::unique_ptr<StrandBuffers> eyeStrands, shadowStrands;
+  bool eyeOld = false, shadowOld = false;  ///< made before the mesh moved
+  std::unique_ptr<ShadowPass> shadows;
+  FrameData shadowFrame;  ///< of the picture that `shadows` was made for
+  bool shadowsHaveHair = false;
+  DetailOptions shadowDetail;  ///< of the strands in the maps
+  std::unique_ptr<FrameTargets> targets;
+  int targetWidth = 0, targetHeight = 0;
+
+  ~Impl();
+  Result<Picture> render(const PreviewOptions& options, const Context& context);
+
+ private:
+  friend class PreviewSession;
+  Box box() const;
+  void upload(Picture& picture);
+  void makeEyeStrands(const PreviewOptions& options, const View& view, Picture& picture,
+                      const Context& context);
+  void makeShadowStrands(const PreviewOptions& options, const FrameData& frame, Picture& picture,
+                         const Context& context);
+  void makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer, Picture& picture,
+                   const Context& context);
+  Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
+              Picture& picture, const Context& context);
+  void drawSubframe(const PreviewOptions& options) const;
+  void dropHair();
+  /// Runs `action` with the context current; nothing happens where it cannot be.
+  template <class Action>
+  void withContext(Action action) {
+    if (device == nullptr || !device->gl->makeCurrent().ok()) return;
+    const CurrentContext current(*device->gl);
+    action();
+  }
+};
+
+}  // namespace coif

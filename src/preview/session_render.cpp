@@ -1,0 +1,304 @@
+#include <algorithm>
+#include <cmath>
+
+#include "preview/session_impl.h"
+
+namespace coif {
+namespace {
+
+constexpr std::size_t kSoftwareSegments = 450000, kHardwareSegments = 12000000;
+constexpr int kSoftwareMap = 1024, kHardwareMap = 2048;
+
+Status checkOptions(const PreviewOptions& options) {
+  if (options.width < 1 || options.height < 1 || options.width > 8192 || options.height > 8192) {
+    return makeError(ErrorCode::InvalidArgument, "a picture's width and height must lie between 1 and 8192");
+  }
+  if (options.subframes < 1 || options.subframes > 64) {
+    return makeError(ErrorCode::InvalidArgument, "the number of sub-frames must lie between 1 and 64");
+  }
+  if (!(options.strandFraction >= 0 && options.strandFraction <= 1)) {
+    return makeError(ErrorCode::InvalidArgument, "the fraction of strands must lie between 0 and 1");
+  }
+  for (const Vec3f* color :
+       {&options.hairColor, &options.headColor, &options.backgroundTop, &options.backgroundBottom}) {
+    if (!color->allFinite() || color->minCoeff() < 0) {
+      return makeError(ErrorCode::InvalidArgument, "colours must be finite and not negative");
+    }
+  }
+  return {};
+}
+
+void include(Box& box, bool& any, const Box& other) {
+  box.lo = any ? Vec3(box.lo.cwiseMin(other.lo)) : other.lo;
+  box.hi = any ? Vec3(box.hi.cwiseMax(other.hi)) : other.hi;
+  any = true;
+}
+
+Box finiteBox(const HairMesh& mesh) {
+  std::vector<Vec3> points;
+  for (const HairVertex& v : mesh.vertices()) {
+    if (v.position.allFinite()) points.push_back(v.position);
+  }
+  return points.empty() ? Box{} : bounds(points);
+}
+
+StageReport& report(Picture& picture, const char* name, StageState state, std::string reason,
+                    std::uint64_t bytes = 0) {
+  StageReport& stage = picture.stages.emplace_back();
+  stage.name = name;
+  stage.state = state;
+  stage.reason = std::move(reason);
+  stage.bytes = bytes;
+  return stage;
+}
+
+/// Times a stage; with `measure` the GPU is waited for.
+class StageTimer {
+ public:
+  StageTimer(StageReport& stage, bool measure) : stage_(stage), measure_(measure) {}
+  ~StageTimer() {
+    if (measure_) glFinish();
+    stage_.seconds = watch_.seconds();
+  }
+
+ private:
+  StageReport& stage_;
+  bool measure_;
+  Stopwatch watch_;
+};
+
+DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
+  DetailOptions detail;
+  detail.lod = options.lod;
+  detail.fraction = options.strandFraction;
+  detail.batchPoints = device.mostBatchPoints;
+  detail.maxSegments = options.maxSegments > 0 ? options.maxSegments
+                       : device.gl->software() ? kSoftwareSegments
+                                               : kHardwareSegments;
+  return detail;
+}
+
+// A hair in the map is a texel wide, and nothing looks at a map from near.
+DetailOptions mapDetailOf(const PreviewOptions& options, const Device& device) {
+  DetailOptions detail = detailOf(options, device);
+  detail.tolerancePx = 0.5;
+  detail.ribbonPx = 1;
+  detail.longestPx = 64;
+  detail.maxSegments /= 2;
+  return detail;
+}
+
+bool sameLight(const FrameData& a, const FrameData& b) {
+  for (int l = 0; l < 3; ++l) {
+    if (a.lightDirection[l] != b.lightDirection[l]) return false;
+  }
+  return a.viewUp == b.viewUp;
+}
+
+std::string strandsText(const DetailPlan& plan) {
+  return std::to_string(plan.strands) + " strands, " + std::to_string(plan.points) + " points";
+}
+
+}  // namespace
+
+Box PreviewSession::Impl::box() const {
+  Box box;
+  bool any = false;
+  if (head != nullptr && !head->positions.empty()) include(box, any, bounds(head->positions));
+  if (hair && !hair->model.coarse.points.empty()) {
+    include(box, any, hair->model.coarse.box);
+    if (hair->model.synthesised) include(box, any, finiteBox(hair->model.mesh));
+  }
+  if (overlay && !overlay->vertices().empty()) include(box, any, finiteBox(*overlay));
+  return box;
+}
+
+void PreviewSession::Impl::upload(Picture& picture) {
+  if (head != nullptr && headBuffers == nullptr) {
+    headBuffers = std::make_unique<HeadBuffers>(*head);
+    picture.uploaded.head = headBuffers->bytes();
+  }
+  if (overlay && overlayPass == nullptr) {
+    overlayPass = std::make_unique<OverlayPass>(*overlay);
+    picture.uploaded.overlay = overlayPass->bytes();
+  }
+  if (!hair) return;
+  const bool first = hairBuffers == nullptr;
+  if (first) {
+    hairBuffers = std::make_unique<HairBuffers>(hair->model, hair->upload);
+    picture.uploaded.strands = hairBuffers->bytes();
+    hair->upload = {};
+  }
+  if (hair->model.synthesised && (first || hairMoved)) {
+    picture.uploaded.hairMesh = hairBuffers->move(hair->model);
+    eyeOld = shadowOld = true;
+  }
+  hairMoved = false;
+  report(picture, "hair", first ? StageState::Ran : StageState::Reused,
+         first ? "new strands" : "the strands' roots did not change", picture.uploaded.strands);
+}
+
+namespace {
+
+/// Brings strands to a plan with as little work as may be.
+void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan, const char* name, bool keep,
+            bool measure, const HairModel& model, const HairBuffers& hair, const Programs& programs,
+            Picture& picture) {
+  const bool same = strands != nullptr && strands->plan() == plan;
+  if (keep && same && !old) {
+    report(picture, name, StageState::Reused, "the same strands with the same points: " + strandsText(plan));
+    return;
+  }
+  StageReport& stage = report(picture, name, StageState::Ran,
+                              strands == nullptr ? "first picture"
+                              : !same            ? "another level of detail"
+                              : old              ? "the hair mesh moved"
+                                                 : "asked for");
+  const StageTimer timer(stage, measure);
+  stage.notes.push_back(strandsText(plan));
+  if (same) {
+    strands->make(model, hair, programs);
+  } else {
+    picture.uploaded.plan += plan.bytes();
+    strands.reset();  // first, so that both need not fit
+    strands = std::make_unique<StrandBuffers>(model, hair, programs, std::move(plan));
+  }
+  stage.bytes = strands->bytes();
+  old = false;
+}
+
+}  // namespace
+
+void PreviewSession::Impl::makeEyeStrands(const PreviewOptions& options, const View& view, Picture& picture,
+                                          const Context& context) {
+  const PixelSize pixelAt = [&](const Vec3& p) { return view.pixelAt(p); };
+  DetailPlan plan = makePlan(hair->model, detailOf(options, *device), pixelAt, context);
+  picture.strandsDrawn = plan.strands;
+  picture.segmentsDrawn = plan.segments();
+  picture.widthScale = plan.widthScale;
+  picture.strandsDropped = hair->model.dropped + hair->model.hidden();
+  if (picture.strandsDropped > 0) {
+    picture.notes.push_back(std::to_string(picture.strandsDropped) +
+                            " strands were left out: values not finite or fewer than two points");
+  }
+  follow(eyeStrands, eyeOld, std::move(plan), "strands for the eye", options.keep, options.measure,
+         hair->model, *hairBuffers, *device->programs, picture);
+}
+
+void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, const FrameData& frame,
+                                             Picture& picture, const Context& context) {
+  const double texel = frame.shadowInfo.z();
+  shadowDetail = mapDetailOf(options, *device);
+  DetailPlan plan = makePlan(
+      hair->model, shadowDetail, [texel](const Vec3&) { return texel; }, context);
+  follow(shadowStrands, shadowOld, std::move(plan), "strands for the maps", options.keep, options.measure,
+         hair->model, *hairBuffers, *device->programs, picture);
+}
+
+void PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer,
+                                       Picture& picture, const Context& context) {
+  const bool withHair = hair && options.shadows;
+  const bool moved =
+      withHair && (shadowStrands == nullptr || shadowOld || shadowDetail != mapDetailOf(options, *device));
+  const bool light = sameLight(frame, shadowFrame);
+  if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair) {
+    copyShadowFields(shadowFrame, frame);
+    glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+    report(picture, "shadow maps", withHair ? StageState::Reused : StageState::Skipped,
+           withHair ? "light and hair did not move" : "no hair, or shadows are off");
+    return;
+  }
+  const int mapSize = device->gl->software() ? kSoftwareMap : kHardwareMap;
+  placeShadowMap(box(), hair ? hair->model.coarse.box : box(), mapSize, frame);
+  if (withHair) makeShadowStrands(options, frame, picture, context);
+  StageReport& stage = report(picture, "shadow maps", withHair ? StageState::Ran : StageState::Skipped,
+                              !withHair            ? "no hair, or shadows are off"
+                              : shadows == nullptr ? "first picture"
+                              : moved              ? "the hair moved, or its detail changed"
+                              : !light             ? "the light moved"
+                                                   : "asked for");
+  const StageTimer timer(stage, options.measure);
+  shadows.reset();
+  shadows = std::make_unique<ShadowPass>(*device->programs, box(), withHair ? &hair->model.coarse : nullptr,
+                                         withHair ? shadowStrands.get() : nullptr, head.get(),
+                                         options.shadows ? headBuffers.get() : nullptr, frame, frameBuffer,
+                                         mapSize, context);
+  shadowFrame = frame;
+  shadowsHaveHair = withHair;
+}
+
+Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, const Context& context) {
+  const Stopwatch watch;
+  COIF_TRY(checkOptions(options));
+  COIF_ASSIGN(const View view, makeView(camera, box(), options.width, options.height));
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
+  COIF_TRY(device->gl->makeCurrent());
+  const CurrentContext current(*device->gl);
+  device->gl->log().clear();
+  Picture picture;
+  upload(picture);
+  if (hair) makeEyeStrands(options, view, picture, context);
+  FrameData frame = makeFrame(view, lights, options);
+  frame.hairColor.w() = hair && hair->model.colored ? 1.0f : 0.0f;
+  Buffer frameBuffer = makeBuffer(std::span<const FrameData>(&frame, 1), GL_DYNAMIC_STORAGE_BIT);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
+  makeShadows(options, frame, frameBuffer, picture, context);
+  COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
+  COIF_TRY(device->programs->error());
+  for (const std::string& warning : device->gl->log().warnings)
+    picture.notes.push_back("OpenGL warns: " + warning);
+  if (const auto& errors = device->gl->log().errors; !errors.empty()) {
+    return makeError(ErrorCode::Unsupported, "the OpenGL driver reports an error: " + errors.front());
+  }
+  picture.uploaded.frame += sizeof frame * std::size_t(options.subframes + 1);
+  picture.seconds = watch.seconds();
+  return picture;
+}
+
+void PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
+  const Programs& programs = *device->programs;
+  targets->begin();
+  if (!options.transparentBackground) {
+    glUseProgram(programs[ProgramId::Backdrop]);
+    glBindVertexArray(device->empty.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glEnable(GL_DEPTH_TEST);
+  if (headBuffers != nullptr) {
+    shadows->bindForHead();
+    glUseProgram(programs[ProgramId::Head]);
+    headBuffers->draw();
+  }
+  if (hair) {
+    shadows->bindForHair();
+    glUseProgram(programs[options.shadows ? ProgramId::Strands : ProgramId::StrandsPlain]);
+    eyeStrands->draw();
+  }
+  if (overlayPass != nullptr) overlayPass->draw(programs);
+  targets->accumulate(programs, device->empty);
+}
+
+Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& view, FrameData& frame,
+                                  Buffer& frameBuffer, Picture& picture, const Context& context) {
+  if (targets == nullptr || targetWidth != options.width || targetHeight != options.height) {
+    targets.reset();
+    COIF_ASSIGN(FrameTargets made, FrameTargets::create(options.width, options.height));
+    targets = std::make_unique<FrameTargets>(std::move(made));
+    targetWidth = options.width, targetHeight = options.height;
+  }
+  targets->clear();
+  StageReport& stage = report(picture, "picture", StageState::Ran, "every picture is drawn");
+  const StageTimer timer(stage, options.measure);
+  for (int k = 0; k < options.subframes; ++k) {
+    if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
+    frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
+    frame.viewport.z() = float(k);
+    glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+    drawSubframe(options);
+    context.report("picture", double(k + 1) / options.subframes);
+  }
+  picture.image = targets->finish(*device->programs, device->empty, options.subframes);
+  return {};
+}
+
+}  // namespace coif

@@ -1,0 +1,184 @@
+#include "preview/synthesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace coif::preview {
+namespace {
+
+constexpr std::size_t kPackedPoint = 32, kColumnSample = 32;  // bytes, as shaders/ have them
+constexpr std::size_t kAlign =
+    8;  // points: a batch starts at a multiple of 256 bytes, enough for every driver
+constexpr GLuint kGroup = 64, kMostGroups = 32768;
+
+Buffer emptyBuffer(std::size_t bytes, GLbitfield flags = 0) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(bytes, 16)), nullptr, flags);
+  return Buffer(name);
+}
+
+void bind(GLuint binding, const Buffer& buffer) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
+}
+
+void dispatch(std::size_t groups) {
+  const auto x = GLuint(std::min<std::size_t>(groups, kMostGroups));
+  if (x > 0) glDispatchCompute(x, GLuint((groups + x - 1) / x), 1);
+}
+
+std::size_t blockSize() {
+  GLint64 bytes = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+  return std::size_t(std::max<GLint64>(bytes, 1 << 24));
+}
+
+float halfToFloat(std::uint32_t bits) {
+  const std::uint32_t exponent = (bits >> 10) & 31, mantissa = bits & 1023;
+  const float size = exponent == 0 ? std::ldexp(float(mantissa), -24)
+                                   : std::ldexp(float(mantissa + 1024), int(exponent) - 25);
+  return bits & 0x8000 ? -size : size;
+}
+
+Vec3f tangentFrom(std::uint32_t bits) {
+  if (bits == 0x80008000u) return Vec3f::Zero();
+  const auto part = [](std::uint32_t word) {
+    return std::max(float(std::int16_t(word & 0xffff)) / 32767.0f, -1.0f);
+  };
+  const float x = part(bits), y = part(bits >> 16), z = 1 - std::abs(x) - std::abs(y);
+  Vec3f t(x, y, z);
+  if (z < 0)
+    t.head<2>() = Eigen::Vector2f(std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y));
+  return t.normalized();
+}
+
+}  // namespace
+
+std::size_t mostBatchPoints() {
+  return std::min<std::size_t>(blockSize() / kPackedPoint, std::size_t{1} << 30) / kAlign * kAlign;
+}
+
+std::size_t mostRawPoints() {
+  return std::min<std::size_t>(blockSize() / 16, std::size_t{1} << 31);
+}
+
+HairBuffers::HairBuffers(const HairModel& model, const HairUpload& upload)
+    : bytes_(upload.bytes() + model.locks.size() * sizeof(Lock) + model.bundleVertices.size() * 4),
+      locks_(makeBuffer(std::span<const Lock>(model.locks))),
+      bundleVertices_(makeBuffer(std::span<const std::uint32_t>(model.bundleVertices))),
+      vertices_(emptyBuffer(model.mesh.vertices().size() * 16, GL_DYNAMIC_STORAGE_BIT)),
+      roots_(makeBuffer(std::span<const Root>(upload.roots))),
+      weights_(makeBuffer(std::span<const float>(upload.weights))),
+      points_(makeBuffer(std::span<const Eigen::Vector4f>(upload.points))),
+      colors_(makeBuffer(std::span<const Eigen::Vector4f>(upload.colors))) {}
+
+std::size_t HairBuffers::move(const HairModel& model) {
+  std::vector<Eigen::Vector4f> positions;
+  for (const HairVertex& v : model.mesh.vertices()) {
+    positions.emplace_back(float(v.position.x()), float(v.position.y()), float(v.position.z()), 0.0f);
+  }
+  if (!positions.empty()) {
+    glNamedBufferSubData(vertices_.name(), 0, GLsizeiptr(positions.size() * 16), positions.data());
+  }
+  return positions.size() * 16;
+}
+
+void HairBuffers::bindForColumns() const {
+  bind(1, locks_), bind(3, vertices_), bind(4, bundleVertices_);
+}
+
+void HairBuffers::bindForPoints(bool synthesised) const {
+  bind(1, locks_), bind(3, roots_), bind(4, synthesised ? weights_ : points_), bind(5, colors_);
+}
+
+StrandBuffers::StrandBuffers(const HairModel& model, const HairBuffers& hair, const Programs& programs,
+                             DetailPlan plan)
+    : plan_(std::move(plan)), array_(makeVertexArray()) {
+  std::size_t points = 0, indices = 0;
+  for (const Batch& batch : plan_.batches) {
+    pointOffsets_.push_back(points);
+    indexOffsets_.push_back(indices);
+    points += (batch.points + kAlign - 1) / kAlign * kAlign;
+    indices += 2 * std::size_t(batch.points) + batch.strands;
+  }
+  shares_ = makeBuffer(std::span<const Share>(plan_.shares));
+  parameters_ = makeBuffer(std::span<const float>(plan_.parameters));
+  columns_ = emptyBuffer(plan_.columns * kColumnSample);
+  points_ = emptyBuffer(points * kPackedPoint);
+  indices_ = emptyBuffer(indices * 4);
+  bytes_ = points * kPackedPoint + indices * 4;
+  glVertexArrayElementBuffer(array_.name(), indices_.name());
+  make(model, hair, programs);
+}
+
+void StrandBuffers::makeColumns(const HairModel& model, const HairBuffers& hair,
+                                const Programs& programs) const {
+  glUseProgram(programs[ProgramId::StrandColumns]);
+  hair.bindForColumns();
+  bind(2, shares_), bind(5, parameters_), bind(6, columns_);
+  glUniform1ui(0, GLuint(plan_.shares.size()));
+  glUniform1i(1, int(model.knots));
+  dispatch(plan_.shares.size());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const Programs& programs) const {
+  if (plan_.points == 0) return;
+  if (model.synthesised) makeColumns(model, hair, programs);
+  glUseProgram(programs[model.synthesised ? ProgramId::StrandPoints : ProgramId::StrandPointsImported]);
+  hair.bindForPoints(model.synthesised);
+  bind(2, shares_), bind(6, columns_), bind(7, indices_);
+  glUniform1f(12, float(plan_.widthScale));
+  glUniform1i(13, model.colored ? 1 : 0);
+  for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
+    const Batch& batch = plan_.batches[b];
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
+                      GLsizeiptr(batch.points * kPackedPoint));
+    glUniform1ui(0, batch.points);
+    glUniform1ui(1, GLuint(indexOffsets_[b]));
+    glUniform1ui(10, batch.firstShare);
+    glUniform1ui(11, batch.shares);
+    dispatch((batch.points + kGroup - 1) / kGroup);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void StrandBuffers::draw() const {
+  if (plan_.points == 0) return;
+  glEnable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
+  glBindVertexArray(array_.name());
+  for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
+    const Batch& batch = plan_.batches[b];
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
+                      GLsizeiptr(batch.points * kPackedPoint));
+    glDrawElements(GL_TRIANGLE_STRIP, GLsizei(2 * std::size_t(batch.points) + batch.strands), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(indexOffsets_[b] * 4));
+  }
+  glDisable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
+}
+
+std::vector<StrandBuffers::Point> StrandBuffers::readBack() const {
+  struct Packed {
+    Vec3f position;
+    float width;
+    std::uint32_t tangent, seed, redGreen, blueAlong;
+  };
+  static_assert(sizeof(Packed) == kPackedPoint);
+  std::vector<Point> out;
+  for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
+    std::vector<Packed> packed(plan_.batches[b].points);
+    glGetNamedBufferSubData(points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
+                            GLsizeiptr(packed.size() * kPackedPoint), packed.data());
+    for (const Packed& p : packed) {
+      out.push_back({p.position, p.width, tangentFrom(p.tangent),
+                     Vec3f(halfToFloat(p.redGreen & 0xffff), halfToFloat(p.redGreen >> 16),
+                           halfToFloat(p.blueAlong & 0xffff)),
+                     halfToFloat(p.blueAlong >> 16), p.seed});
+    }
+  }
+  return out;
+}
+
+}  // namespace coif::preview

@@ -1,0 +1,65 @@
+// Strands on the GPU: what they are made from, and the points of a plan.
+#pragma once
+
+#include <vector>
+
+#include "preview/detail.h"
+#include "preview/gl_objects.h"
+#include "preview/hair_model.h"
+#include "preview/program.h"
+
+namespace coif::preview {
+
+/// Where strands come from: roots, weights and topology, uploaded once, and the vertices of the hair mesh.
+class HairBuffers {
+ public:
+  HairBuffers(const HairModel& model, const HairUpload& upload);
+  /// Uploads the mesh's vertices; says how many bytes.
+  std::size_t move(const HairModel& model);
+  std::size_t bytes() const { return bytes_; }  ///< of what was uploaded by the constructor
+  void bindForColumns() const;
+  void bindForPoints(bool synthesised) const;
+
+ private:
+  std::size_t bytes_ = 0;
+  Buffer locks_, bundleVertices_, vertices_, roots_, weights_, points_, colors_;
+};
+
+/// The points and triangle strips of a plan, made on the GPU.
+class StrandBuffers {
+ public:
+  explicit StrandBuffers(const HairModel& model, const HairBuffers& hair, const Programs& programs,
+                         DetailPlan plan);
+  /// Makes the points again, after the mesh moved.
+  void make(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
+  /// All ribbons, with the bound program.
+  void draw() const;
+  const DetailPlan& plan() const { return plan_; }
+  std::size_t bytes() const { return bytes_; }  ///< of points and indices
+
+  struct Point {
+    Vec3f position;
+    float width;
+    Vec3f tangent, color;
+    float along;
+    std::uint32_t seed;
+  };
+  /// For tests and exports: all points, share by share.
+  std::vector<Point> readBack() const;
+
+ private:
+  void makeColumns(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
+
+  DetailPlan plan_;
+  std::size_t bytes_ = 0;
+  std::vector<std::size_t> pointOffsets_, indexOffsets_;  ///< of batches, in points and indices
+  Buffer shares_, parameters_, columns_, points_, indices_;
+  VertexArray array_;
+};
+
+/// Most points a batch may have with this driver.
+std::size_t mostBatchPoints();
+/// Most points of strands that came as points, with this driver.
+std::size_t mostRawPoints();
+
+}  // namespace coif::preview
