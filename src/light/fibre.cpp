@@ -110,6 +110,15 @@ Vec3 FibreScattering::azimuthal(FibreLobe lobe, double thetaI, double thetaO, do
   return azimuthal(thetaI, thetaO, phi)[std::size_t(lobe)];
 }
 
+std::array<Vec3, 4> FibreScattering::attenuation(double thetaI, double thetaO) const {
+  return impl_->meanAttenuation(Inclination::ofAngle(thetaI), Inclination::ofAngle(thetaO));
+}
+
+double FibreScattering::azimuthalInclination(double thetaI, double thetaO) const {
+  const bool marschner = parameters().model == FibreModel::Marschner;
+  return std::abs(marschner ? (thetaO - thetaI) / 2 : thetaO);
+}
+
 double FibreScattering::lobeShift(FibreLobe lobe) const {
   return impl_->shifts[std::size_t(lobe)];
 }

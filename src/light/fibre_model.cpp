@@ -57,6 +57,14 @@ double coneFactor(const Inclination& i, const Inclination& o) {
   return i.cos / (cosine * cosine);
 }
 
+// Offset h of the border after so many strips, and the share of the width of the strip before it.
+double stripEdge(double strips) {
+  return std::sin(kPi * (strips / kStrips - 0.5));
+}
+double stripShare(int strip) {
+  return (stripEdge(strip) - stripEdge(strip - 1)) / 2;
+}
+
 }  // namespace
 
 FibreModelTerms::FibreModelTerms(const FibreParameters& wanted)
@@ -118,20 +126,29 @@ std::array<Vec3, 4> FibreModelTerms::meanAzimuth(const Inclination& i, const Inc
   sum.fill(Vec3::Zero());
   std::array<double, 3> low{};
   for (int strip = 0; strip <= kStrips; ++strip) {
-    const double edge = std::sin(kPi * (double(strip) / kStrips - 0.5));
-    const Crossing border = cross(i, o, edge);
+    const Crossing border = cross(i, o, stripEdge(strip));
     std::array<double, 3> high{};
     for (int p = 0; p < 3; ++p) high[p] = phi - border.azimuth(p);
     if (strip > 0) {
-      const double edgeBefore = std::sin(kPi * (double(strip - 1) / kStrips - 0.5));
-      const Crossing middle = cross(i, o, std::sin(kPi * ((strip - 0.5) / kStrips - 0.5)));
-      const double share = (edge - edgeBefore) / 2;
+      const Crossing middle = cross(i, o, stripEdge(strip - 0.5));
+      const double share = stripShare(strip);
       for (int p = 0; p < 3; ++p) {
         sum[p] += middle.attenuation[p] * (share * azimuthalRoughness.meanDensity(low[p], high[p]));
       }
       sum[3] += middle.attenuation[3] * (share / (2 * kPi));
     }
     low = high;
+  }
+  return sum;
+}
+
+std::array<Vec3, 4> FibreModelTerms::meanAttenuation(const Inclination& i, const Inclination& o) const {
+  if (parameters.model == FibreModel::KajiyaKay) return kajiyaKay;
+  std::array<Vec3, 4> sum;
+  sum.fill(Vec3::Zero());
+  for (int strip = 1; strip <= kStrips; ++strip) {
+    const Crossing middle = cross(i, o, stripEdge(strip - 0.5));
+    for (int p = 0; p < 4; ++p) sum[p] += middle.attenuation[p] * stripShare(strip);
   }
   return sum;
 }

@@ -25,6 +25,8 @@ struct FibreModelTerms {
   double azimuth(int lobe, const Crossing& crossing, double phi) const;
   /// ∫ attenuation · azimuth dh / 2 of every lobe.
   std::array<Vec3, 4> meanAzimuth(const Inclination& i, const Inclination& o, double phi) const;
+  /// ∫ attenuation dh / 2.
+  std::array<Vec3, 4> meanAttenuation(const Inclination& i, const Inclination& o) const;
 
   std::array<double, 4> chances(const Inclination& o, double h) const;
   double proposal(int lobe, const Inclination& i, const Inclination& o) const;

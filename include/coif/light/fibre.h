@@ -82,6 +82,10 @@ class FibreScattering {
   Vec3 azimuthal(FibreLobe lobe, double thetaI, double thetaO, double phi) const;
   /// All four lobes at once, for the price of one.
   std::array<Vec3, 4> azimuthal(double thetaI, double thetaO, double phi) const;
+  /// ∫ azimuthal dφ of the lobes: their sum is 1 without absorption.
+  std::array<Vec3, 4> attenuation(double thetaI, double thetaO) const;
+  /// The one inclination, >= 0, that azimuthal() and attenuation() depend on: tables need no other.
+  double azimuthalInclination(double thetaI, double thetaO) const;
   /// θ_i + θ_o at which a lobe is seen, and its variance over that sum.
   double lobeShift(FibreLobe lobe) const;
   double lobeVariance(FibreLobe lobe) const;
