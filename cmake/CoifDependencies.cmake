@@ -19,6 +19,10 @@ coif_system_library(openmesh OpenMesh/Core/Mesh/PolyConnectivity.hh OpenMeshCore
 coif_system_library(opensubdiv opensubdiv/far/topologyRefiner.h osdCPU)
 coif_system_library(lz4 lz4.h lz4)
 coif_system_library(tinygltf tiny_gltf.h tinygltf)
+if(COIF_WITH_EMBREE)
+  coif_system_library(embree embree3/rtcore.h embree3)
+endif()
+find_package(OpenEXR 3 REQUIRED CONFIG)
 
 # libigl: an installed package, else the upstream sources at a pinned tag, else what
 # scripts/setup.sh unpacked from Debian's source package (see there).

@@ -11,7 +11,7 @@ PACKAGES=(
   build-essential cmake ninja-build ccache git ca-certificates dpkg-dev
   python3 python3-dev python3-venv
   libeigen3-dev libopenmesh-dev libosd-dev libtinygltf-dev libtbb-dev libepoxy-dev libegl-dev libgl-dev
-  libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev liblz4-dev libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
+  libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev libopenexr-dev libembree-dev liblz4-dev libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
 )
 missing=()
 for package in "${PACKAGES[@]}"; do
@@ -64,6 +64,7 @@ python_has numpy || wheels+=(numpy)
 if [ "${1:-}" = --tests ]; then
   python_has pytest || wheels+=(pytest)
   python_has pxr || wheels+=(usd-core)
+  python_has flip_evaluator || wheels+=(flip-evaluator)
   python_has scikit_build_core || wheels+=(scikit-build-core)
 fi
 if [ ${#wheels[@]} -gt 0 ]; then

@@ -19,10 +19,6 @@ struct Frame {
   Vec3 position, tangent, normal;
 };
 
-double widthAt(const StrandSet& set, std::size_t point) {
-  return set.widths.empty() ? kUsualHairWidth / set.metersPerUnit : double(set.widths[point]);
-}
-
 /// A frame a point; the normal turns as little as it can while facing away from the centre. Empty without
 /// length.
 std::vector<Frame> framesOf(std::span<const Vec3f> points, const Vec3& centre) {
@@ -125,28 +121,11 @@ TriangleMesh strandShapes(const StrandSet& set, StrandMesh shape, std::size_t li
   return mesh;
 }
 
-namespace {
-
-std::vector<Vec3> vertexNormals(const PolygonMesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertexCount(), Vec3::Zero());
-  std::vector<Vec3> polygon;
-  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
-    polygon.clear();
-    for (const std::uint32_t v : mesh.face(f)) polygon.push_back(mesh.positions[v]);
-    const Vec3 normal = newellNormal(polygon);
-    for (const std::uint32_t v : mesh.face(f)) normals[v] += normal;
-  }
-  for (Vec3& normal : normals) {
-    normal.stableNormalize();
-    if (!(std::abs(normal.norm() - 1) < 1e-3)) normal = Vec3::UnitY();  // no face, or faces that cancel
-  }
-  return normals;
-}
-
-}  // namespace
-
 Result<TriangleMesh> trianglesOf(const PolygonMesh& mesh) {
-  const std::vector<Vec3> normals = vertexNormals(mesh);
+  std::vector<Vec3> normals = vertexNormals(mesh);
+  for (Vec3& normal : normals) {
+    if (normal.isZero(1e-3)) normal = Vec3::UnitY();  // no face, or faces that cancel
+  }
   const bool hasUvs = !mesh.cornerUvs.empty();
   std::vector<std::uint32_t> order(mesh.corners.size());
   for (std::uint32_t c = 0; c < order.size(); ++c) order[c] = c;

@@ -32,4 +32,25 @@ Camera frameBox(const Box& box, UpAxis upAxis, double azimuthDeg, double elevati
   return camera;
 }
 
+Result<CameraFrame> frameOf(const Camera& camera) {
+  const Vec3 forward = camera.target - camera.eye;
+  const Vec3 right = forward.cross(camera.up);
+  const double spanned = right.norm() / std::max(forward.norm() * camera.up.norm(), 1e-300);
+  if (!camera.eye.allFinite() || !forward.allFinite() || !camera.up.allFinite() || !(spanned > 1e-6)) {
+    return makeError(ErrorCode::InvalidArgument,
+                     "the camera's eye, target and up must be finite and span a plane");
+  }
+  if (!(camera.fovDeg > 0.01 && camera.fovDeg < 179)) {
+    return makeError(ErrorCode::InvalidArgument,
+                     "the camera's angle of view must lie between 0.01 and 179 degrees");
+  }
+  CameraFrame frame;
+  frame.eye = camera.eye;
+  frame.forward = forward.normalized();
+  frame.right = right.normalized();
+  frame.up = frame.right.cross(frame.forward);
+  frame.slopeY = std::tan(camera.fovDeg * 3.14159265358979323846 / 360);
+  return frame;
+}
+
 }  // namespace coif

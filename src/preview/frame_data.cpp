@@ -17,25 +17,15 @@ Vec4f vec4(const Vec3f& v, float w = 0) {
 }  // namespace
 
 Result<View> makeView(const Camera& camera, const Box& scene, int width, int height) {
-  const Vec3 forward = camera.target - camera.eye;
-  const Vec3 right = forward.cross(camera.up);
-  const double spanned = right.norm() / std::max(forward.norm() * camera.up.norm(), 1e-300);
-  if (!camera.eye.allFinite() || !forward.allFinite() || !camera.up.allFinite() || !(spanned > 1e-6)) {
-    return makeError(ErrorCode::InvalidArgument,
-                     "the camera's eye, target and up must be finite and span a plane");
-  }
-  if (!(camera.fovDeg > 0.01 && camera.fovDeg < 179)) {
-    return makeError(ErrorCode::InvalidArgument,
-                     "the camera's angle of view must lie between 0.01 and 179 degrees");
-  }
+  COIF_ASSIGN(const CameraFrame frame, frameOf(camera));
   View view;
-  view.eye = camera.eye;
-  view.forward = forward.normalized();
-  view.right = right.normalized();
-  view.up = view.right.cross(view.forward);
+  view.eye = frame.eye;
+  view.forward = frame.forward;
+  view.right = frame.right;
+  view.up = frame.up;
   view.width = width;
   view.height = height;
-  view.pixelAtOne = 2 * std::tan(camera.fovDeg * 3.14159265358979323846 / 360) / height;
+  view.pixelAtOne = 2 * frame.slopeY / height;
   double nearest = INFINITY, farthest = 0;
   for (int c = 0; c < 8; ++c) {
     const Vec3 corner((c & 1 ? scene.hi : scene.lo).x(), (c & 2 ? scene.hi : scene.lo).y(),
@@ -86,10 +76,8 @@ FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions
       Vec4f(float(view.width), float(view.height), 0, options.transparentBackground ? 1.0f : 0.0f);
   const Light* three[] = {&lights.key, &lights.fill, &lights.rim};
   for (int l = 0; l < 3; ++l) {
-    const Vec3 d = three[l]->direction;
-    const Vec3 world =
-        lights.followCamera ? Vec3(d.x() * view.right + d.y() * view.up - d.z() * view.forward) : d;
-    frame.lightDirection[l] = vec4(Vec3(world.stableNormalized()));
+    frame.lightDirection[l] =
+        vec4(towardsLight(*three[l], lights.followCamera, view.right, view.up, view.forward));
     frame.lightColor[l] = vec4(three[l]->color);
   }
   frame.skyColor = vec4(lights.skyColor);

@@ -12,12 +12,7 @@ namespace {
 constexpr std::size_t kCoarseStrands = 8192;
 constexpr std::uint32_t kCoarseImported = 17;  // points a strand, at most
 constexpr std::size_t kExamples = 48;          // a lock
-constexpr float kDefaultWidthM = 8e-5f;
 
-float widthOf(const StrandSet& strands, std::size_t point) {
-  if (!strands.widths.empty()) return strands.widths[point];
-  return kDefaultWidthM / float(strands.metersPerUnit > 0 ? strands.metersPerUnit : 0.01);
-}
 bool usableWidth(float width) {
   return std::isfinite(width) && width >= 0;
 }
@@ -78,7 +73,7 @@ std::uint32_t bundleOfStrand(const HairMesh& mesh, const StrandSet& strands, std
   }
   const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1];
   if (last < first + 2 || !strands.points[first].allFinite()) return kNone;
-  if (!usableWidth(widthOf(strands, first)) || !usableWidth(widthOf(strands, last - 1))) return kNone;
+  if (!usableWidth(widthAt(strands, first)) || !usableWidth(widthAt(strands, last - 1))) return kNone;
   return !strands.colors.empty() && !strands.colors[first].allFinite() ? kNone : bundle;
 }
 
@@ -91,8 +86,8 @@ void addCoarseRoot(const StrandSet& strands, std::size_t s, std::uint32_t bundle
     roots.weights.push_back(strands.weights[w]);
   roots.weightOffsets.push_back(roots.weights.size());
   model.coarseLandings.push_back(strands.points[strands.offsets[s]]);
-  model.coarseWidths.push_back(widthOf(strands, strands.offsets[s]));
-  model.coarseWidths.push_back(widthOf(strands, strands.offsets[s + 1] - 1));
+  model.coarseWidths.push_back(widthAt(strands, strands.offsets[s]));
+  model.coarseWidths.push_back(widthAt(strands, strands.offsets[s + 1] - 1));
 }
 
 void sortCoarseRoots(RootSet& roots, std::size_t bundles) {
@@ -111,16 +106,6 @@ double liftOf(const HairMesh& mesh, std::uint32_t bundle, std::span<const float>
   return (root.cast<double>() - sum).norm();
 }
 
-bool usable(const StrandSet& strands, std::size_t s) {
-  const std::size_t begin = strands.offsets[s], end = strands.offsets[s + 1];
-  if (end < begin + 2) return false;
-  for (std::size_t p = begin; p < end; ++p) {
-    if (!strands.points[p].allFinite() || !usableWidth(widthOf(strands, p))) return false;
-    if (!strands.colors.empty() && !strands.colors[p].allFinite()) return false;
-  }
-  return true;
-}
-
 void addExample(const StrandSet& strands, std::size_t s, HairModel::Members& lock) {
   if (lock.examples.size() >= kExamples) return;
   std::vector<Vec3>& example = lock.examples.emplace_back();
@@ -132,7 +117,7 @@ void addCoarseImported(const StrandSet& strands, std::size_t s, CoarseStrands& c
   const std::size_t pieces = std::min<std::size_t>(last, kCoarseImported - 1);
   for (std::size_t k = 0; k <= pieces; ++k) {
     const std::size_t p = begin + k * last / pieces;
-    coarse.points.push_back({strands.points[p], widthOf(strands, p)});
+    coarse.points.push_back({strands.points[p], widthAt(strands, p)});
   }
   coarse.starts.push_back(std::uint32_t(coarse.points.size()));
 }
@@ -166,7 +151,7 @@ Result<PreparedHair> prepareGrown(const HairMesh& mesh, const StrandSet& strands
     const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
     const std::uint64_t weight = strands.weightOffsets[s];
     const std::uint32_t corners = model.locks[lockOf[s]].corners;
-    upload.roots[sorted.places[s]] = {strands.points[first], widthOf(strands, first), widthOf(strands, last),
+    upload.roots[sorted.places[s]] = {strands.points[first], widthAt(strands, first), widthAt(strands, last),
                                       seedOf(strands, s),    std::uint32_t(weight),   corners};
     if (model.colored) upload.colors[sorted.places[s]] = vec4(strands.colors[first]);
     model.fullPoints = std::max(model.fullPoints, std::uint32_t(last - first + 1));
@@ -198,7 +183,7 @@ Result<PreparedHair> prepareImported(const StrandSet& strands, std::size_t maxPo
   std::vector<std::uint32_t> lockOf(count, kNone);
   parallelFor(context, count, 2048, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      if (usable(strands, s)) lockOf[s] = ladderStep(std::uint32_t(strands.strand(s).size() - 1));
+      if (drawable(strands, s)) lockOf[s] = ladderStep(std::uint32_t(strands.strand(s).size() - 1));
     }
   });
   std::uint32_t steps = 0;
@@ -212,7 +197,7 @@ Result<PreparedHair> prepareImported(const StrandSet& strands, std::size_t maxPo
   upload.colors.resize(model.colored ? points : 0);
   parallelFor(context, points, 1 << 15, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      upload.points[p] = vec4(strands.points[p], widthOf(strands, p));
+      upload.points[p] = vec4(strands.points[p], widthAt(strands, p));
       if (model.colored) upload.colors[p] = vec4(strands.colors[p]);
     }
   });
@@ -220,8 +205,8 @@ Result<PreparedHair> prepareImported(const StrandSet& strands, std::size_t maxPo
   for (std::size_t s = 0; s < count; ++s) {
     if (lockOf[s] == kNone) continue;
     const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
-    upload.roots[sorted.places[s]] = {strands.points[first],  widthOf(strands, first),
-                                      widthOf(strands, last), seedOf(strands, s),
+    upload.roots[sorted.places[s]] = {strands.points[first],  widthAt(strands, first),
+                                      widthAt(strands, last), seedOf(strands, s),
                                       std::uint32_t(first),   std::uint32_t(last - first + 1)};
     HairModel::Members& lock = model.members[lockOf[s]];
     lock.mostPoints = std::max(lock.mostPoints, std::uint32_t(last - first + 1));

@@ -1,5 +1,3 @@
-#include <Eigen/Geometry>
-
 #include "preview/passes.h"
 
 namespace coif::preview {
@@ -8,21 +6,16 @@ HeadBuffers::HeadBuffers(const PolygonMesh& head) : array_(makeVertexArray()) {
   struct Vertex {
     Vec3f position, normal;
   };
-  std::vector<Vec3> normals(head.vertexCount(), Vec3::Zero());
+  const std::vector<Vec3> normals = vertexNormals(head);
   std::vector<std::uint32_t> indices;
-  std::vector<Vec3> polygon;
   for (std::size_t f = 0; f < head.faceCount(); ++f) {
     const auto face = head.face(f);
-    polygon.clear();
-    for (const std::uint32_t v : face) polygon.push_back(head.positions[v]);
-    const Vec3 normal = newellNormal(polygon);
-    for (const std::uint32_t v : face) normals[v] += normal;
     for (std::size_t t = 1; t + 1 < face.size(); ++t)
       indices.insert(indices.end(), {face[0], face[t], face[t + 1]});
   }
   std::vector<Vertex> vertices(head.vertexCount());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    vertices[v] = {head.positions[v].cast<float>(), normals[v].stableNormalized().cast<float>()};
+    vertices[v] = {head.positions[v].cast<float>(), normals[v].cast<float>()};
   }
   count_ = GLsizei(indices.size());
   bytes_ = vertices.size() * sizeof(Vertex) + indices.size() * 4;

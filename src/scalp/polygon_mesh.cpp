@@ -75,4 +75,18 @@ Vec3 newellNormal(std::span<const Vec3> polygon) {
   return sum;
 }
 
+std::vector<Vec3> vertexNormals(const PolygonMesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertexCount(), Vec3::Zero());
+  std::vector<Vec3> polygon;
+  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+    const auto face = mesh.face(f);
+    polygon.clear();
+    for (const std::uint32_t v : face) polygon.push_back(mesh.positions[v]);
+    const Vec3 normal = newellNormal(polygon);
+    for (const std::uint32_t v : face) normals[v] += normal;
+  }
+  for (Vec3& n : normals) n = n.stableNormalized();
+  return normals;
+}
+
 }  // namespace coif

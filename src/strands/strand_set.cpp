@@ -113,4 +113,21 @@ Status validate(const StrandSet& set, bool requireFinite) {
   return requireFinite ? checkFinite(set) : Status{};
 }
 
+float widthAt(const StrandSet& strands, std::size_t point) {
+  constexpr float kHairM = 8e-5f;
+  if (!strands.widths.empty()) return strands.widths[point];
+  return kHairM / float(strands.metersPerUnit > 0 ? strands.metersPerUnit : 0.01);
+}
+
+bool drawable(const StrandSet& strands, std::size_t s) {
+  const std::size_t begin = strands.offsets[s], end = strands.offsets[s + 1];
+  if (end < begin + 2) return false;
+  for (std::size_t p = begin; p < end; ++p) {
+    const float width = widthAt(strands, p);
+    if (!strands.points[p].allFinite() || !std::isfinite(width) || width < 0) return false;
+    if (!strands.colors.empty() && !strands.colors[p].allFinite()) return false;
+  }
+  return true;
+}
+
 }  // namespace coif

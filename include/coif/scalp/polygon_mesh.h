@@ -48,4 +48,8 @@ Box bounds(std::span<const Vec3> points);
 /// Newell normal of a polygon; its length is twice the (projected) area.
 Vec3 newellNormal(std::span<const Vec3> polygon);
 
+/// V unit normals for smooth shading: the faces' means by area; zero for a vertex without area around it.
+/// `mesh` passes validate().
+std::vector<Vec3> vertexNormals(const PolygonMesh& mesh);
+
 }  // namespace coif

@@ -46,4 +46,10 @@ static_assert(sizeof(Vec3f) == 12 && sizeof(Vec2f) == 8, "the arrays are handed 
 /// range; with `requireFinite`, points or widths that are not finite. Names the strand.
 Status validate(const StrandSet& strands, bool requireFinite = true);
 
+/// Diameter at a point: the stored one, or that of a human hair (0.08 mm) where the set has none.
+float widthAt(const StrandSet& strands, std::size_t point);
+/// Whether light and preview can show a strand: two points or more, positions and colours finite, widths
+/// finite and not negative. `strands` keeps what validate(…, false) asks.
+bool drawable(const StrandSet& strands, std::size_t s);
+
 }  // namespace coif
