@@ -76,10 +76,9 @@ FibreSample FibreScattering::sample(const Vec3& wo, double h, const std::array<d
   const Crossing crossing = impl_->cross(i, o.theta, h);
   const double phi = o.phi + impl_->sampleAzimuth(lobe, crossing, u[3]);
   sample.direction = Vec3(i.sin, i.cos * std::cos(phi), i.cos * std::sin(phi));
-  sample.pdf = pdf(sample.direction, wo, h);
-  if (sample.pdf > 0 && std::isfinite(sample.pdf)) {
-    sample.weight = evaluate(sample.direction, wo, h) / sample.pdf;
-  }
+  const FibreModelTerms::Both both = impl_->both(i, o.theta, crossing, chances, phi - o.phi);
+  sample.pdf = std::isfinite(both.pdf) ? both.pdf : 0;
+  if (sample.pdf > 0) sample.weight = both.value / both.pdf;
   return sample;
 }
 

@@ -153,6 +153,20 @@ std::array<Vec3, 4> FibreModelTerms::meanAttenuation(const Inclination& i, const
   return sum;
 }
 
+FibreModelTerms::Both FibreModelTerms::both(const Inclination& i, const Inclination& o,
+                                            const Crossing& crossing, const std::array<double, 4>& chances,
+                                            double phi) const {
+  Both out;
+  const bool same = parameters.model == FibreModel::Chiang;  // it is drawn from its own M
+  for (int p = 0; p < 4; ++p) {
+    const double around = azimuth(p, crossing, phi);
+    const double drawn = chances[p] > 0 || same ? proposal(p, i, o) : 0;
+    out.value += crossing.attenuation[p] * (around * (same ? drawn : longitudinal(p, i, o, 0)));
+    out.pdf += chances[p] * drawn * around;
+  }
+  return out;
+}
+
 std::array<double, 4> FibreModelTerms::chances(const Inclination& o, double h) const {
   // Light on the specular cone has θ_i = −θ_o, for which the difference angle is θ_o itself.
   const Crossing crossing = cross(Inclination{-o.angle, -o.sin, o.cos}, o, h);

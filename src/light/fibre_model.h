@@ -28,6 +28,13 @@ struct FibreModelTerms {
   /// ∫ attenuation dh / 2.
   std::array<Vec3, 4> meanAttenuation(const Inclination& i, const Inclination& o) const;
 
+  /// f · cos θ_i and the density of its proposals, together.
+  struct Both {
+    Vec3 value = Vec3::Zero();
+    double pdf = 0;
+  };
+  Both both(const Inclination& i, const Inclination& o, const Crossing& crossing,
+            const std::array<double, 4>& chances, double phi) const;
   std::array<double, 4> chances(const Inclination& o, double h) const;
   double proposal(int lobe, const Inclination& i, const Inclination& o) const;
   Inclination sampleInclination(int lobe, const Inclination& o, double u1, double u2) const;

@@ -1,0 +1,36 @@
+// Dual scattering's global part from a map of the light instead of rays: seven sums a place along the light
+// (optical depth, and per channel the depth of forward scattering and its variance).
+//
+// Any visibility method that sums channels holds them: `Opacity` with many slices is the paper's voxel grid
+// along the light (forward scattering map), DeepOpacity its layers on the GPU, Exact the limit.
+// A fibre that covers α of a texel lets 1 − α of the light pass and scatters α ā_f forwards, independently of
+// the others: direct = Π (1 − α), T_f = Π (1 − α + α ā_f); their logarithms and the variances add up.
+#pragma once
+
+#include <memory>
+
+#include "coif/light/dual_scattering.h"
+#include "coif/light/visibility.h"
+
+namespace coif {
+
+class ForwardScatteringMap {
+ public:
+  /// Of one light, distant or a point, for hair of one colour. `strands` need not outlive it; an opaque map
+  /// in `options` must. Errors: those of FragmentStream::make and buildVisibility. Cost: that of the
+  /// visibility method with six further channels.
+  static Result<ForwardScatteringMap> build(const StrandSet& strands, const DualScattering& hair,
+                                            const LightView& view, const VisibilityOptions& options,
+                                            const Context& context = {},
+                                            const FragmentOptions& fragments = {});
+
+  /// Never NaN; points off the map are lit. Thread-safe.
+  ForwardScattering at(const Vec3& world) const;
+  const VisibilityMap& map() const { return *map_; }
+
+ private:
+  explicit ForwardScatteringMap(std::unique_ptr<VisibilityMap> map) : map_(std::move(map)) {}
+  std::unique_ptr<VisibilityMap> map_;
+};
+
+}  // namespace coif

@@ -1,0 +1,104 @@
+#include "coif/light/forward_scattering.h"
+
+#include <gtest/gtest.h>
+
+#include "light_fixture.h"
+
+namespace coif {
+namespace {
+
+FibreScattering brownFibre() {
+  return FibreScattering(FibreParameters{});
+}
+
+// Straight fibres along x across the unit square, at these depths below z = 0; y in the middle of a texel.
+StrandSet layersOfFibres(const std::vector<double>& depths, double width) {
+  StrandSet strands;
+  for (const double depth : depths) {
+    addStrand(strands, {Vec3f(-0.5f, 0.01f, float(-depth)), Vec3f(0.5f, 0.01f, float(-depth))}, float(width));
+  }
+  return strands;
+}
+
+VisibilityOptions exact() {
+  VisibilityOptions options;
+  options.method = VisibilityMethod::Exact;
+  return options;
+}
+
+TEST(ForwardScatteringMap, MultipliesWhatEachFibreLeaves) {
+  const DualScattering hair(brownFibre());
+  const StrandSet strands = layersOfFibres({0.1, 0.3, 0.5}, 0.004);
+  const LightView view = distantLightView(Vec3::UnitZ(), {Vec3(-0.5, -0.5, -1), Vec3(0.5, 0.5, 0)}, 64);
+  const auto map = ForwardScatteringMap::build(strands, hair, view, exact());
+  ASSERT_TRUE(map.ok());
+  const double alpha = 0.004 / view.texel;
+  for (int above = 0; above <= 3; ++above) {
+    const ForwardScattering at = map->at(Vec3(0, 0.01, -0.2 * above));
+    EXPECT_NEAR(at.directFraction, std::pow(1 - alpha, above), 1e-5);  // float sums
+    for (int c = 0; c < 3; ++c) {
+      const double forward = hair.forwardAttenuation(0)[c], one = hair.forwardVariance(0)[c];
+      EXPECT_NEAR(at.transmittance[c], std::pow(1 - alpha + alpha * forward, above), 1e-5);
+      if (above == 0) {
+        EXPECT_EQ(at.variance[c], 0);
+        continue;
+      }
+      // Scattered once to `above` times: k fibres met with chance α, each leaving ā_f and adding its
+      // variance.
+      double weight = 0, sum = 0, choose = 1;
+      for (int k = 1; k <= above; ++k) {
+        choose = choose * (above - k + 1) / k;
+        const double w = choose * std::pow(alpha * forward, k) * std::pow(1 - alpha, above - k);
+        weight += w, sum += w * k * one;
+      }
+      EXPECT_NEAR(at.variance[c], sum / weight, 1e-3 * one);
+    }
+  }
+}
+
+TEST(ForwardScatteringMap, VoxelsApproachTheExactSums) {
+  const DualScattering hair(brownFibre());
+  const CounterRandom random(3);
+  StrandSet strands;
+  for (int s = 0; s < 3000; ++s) {
+    const auto u = [&](int k) { return random.uniform(std::uint64_t(8 * s + k)) - 0.5; };
+    const Vec3 from(-0.5, u(0), u(1)), to(0.5, u(0) + 0.2 * u(2), u(1) + 0.2 * u(3));
+    addStrand(strands, {from.cast<float>(), to.cast<float>()}, 0.003f);
+  }
+  const Box box{Vec3(-0.5, -0.6, -0.6), Vec3(0.5, 0.6, 0.6)};
+  const LightView view = distantLightView(Vec3(0.3, 0.2, 1), box, 48);
+  const auto truth = ForwardScatteringMap::build(strands, hair, view, exact());
+  ASSERT_TRUE(truth.ok());
+  double before = 1;
+  for (const int slices : {8, 32, 128}) {
+    VisibilityOptions options;
+    options.method = VisibilityMethod::Opacity;
+    options.slices = slices;
+    const auto map = ForwardScatteringMap::build(strands, hair, view, options);
+    ASSERT_TRUE(map.ok());
+    double error = 0;
+    for (int k = 0; k < 500; ++k) {
+      const Vec3 at = 0.8 * Vec3(random.uniform(90000 + 3 * k) - 0.5, random.uniform(90001 + 3 * k) - 0.5,
+                                 random.uniform(90002 + 3 * k) - 0.5);
+      const ForwardScattering one = map->at(at), other = truth->at(at);
+      error += (one.transmittance - other.transmittance).cwiseAbs().mean() / 500;
+      EXPECT_GE(one.transmittance.minCoeff(), one.directFraction - 1e-6);
+    }
+    EXPECT_LT(error, 0.6 * before) << slices;  // first order in the slice's depth, until single fibres show
+    before = error;
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+TEST(ForwardScatteringMap, NoHairIsNoShadow) {
+  const DualScattering hair(brownFibre());
+  const LightView view = distantLightView(Vec3::UnitZ(), {}, 16);
+  const auto map = ForwardScatteringMap::build(StrandSet{}, hair, view, exact());
+  ASSERT_TRUE(map.ok());
+  const ForwardScattering at = map->at(Vec3(0.1, 0.1, 0.1));
+  EXPECT_EQ(at.directFraction, 1);
+  EXPECT_EQ(at.transmittance, Vec3::Ones());
+}
+
+}  // namespace
+}  // namespace coif
