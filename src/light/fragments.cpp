@@ -65,14 +65,13 @@ bool FragmentStream::finiteStrand(std::size_t s) const {
   return true;
 }
 
-FragmentStream::Chunk FragmentStream::binned(std::size_t firstStrand, std::size_t endStrand,
-                                             std::size_t& dropped) const {
+FragmentStream::Chunk FragmentStream::binned(std::size_t firstStrand, std::size_t endStrand) {
   Chunk chunk;
   chunk.bands.resize(std::size_t(bandCount()));
   MapSegment segment;
   for (std::size_t s = firstStrand; s < endStrand; ++s) {
     if (!finiteStrand(s)) {
-      ++dropped;
+      bad_[s] = 1;
       continue;
     }
     for (std::uint64_t p = strands_->offsets[s]; p + 1 < strands_->offsets[s + 1]; ++p) {
@@ -107,12 +106,12 @@ Result<FragmentStream> FragmentStream::make(const StrandSet& strands, const Ligh
   stream.widthFactor_ = options.widthScale * (strands.widths.empty() ? standard : 1.0);
   const std::size_t count = (strands.strandCount() + kStrandsAChunk - 1) / kStrandsAChunk;
   stream.chunks_.resize(count);
-  std::vector<std::size_t> dropped(count, 0);
+  stream.bad_.assign(strands.strandCount(), 0);
   parallelFor(context, strands.strandCount(), kStrandsAChunk, [&](std::size_t begin, std::size_t end) {
-    stream.chunks_[begin / kStrandsAChunk] = stream.binned(begin, end, dropped[begin / kStrandsAChunk]);
+    stream.chunks_[begin / kStrandsAChunk] = stream.binned(begin, end);
   });
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the shadow map was cancelled");
-  for (const std::size_t d : dropped) stream.dropped_ += d;
+  stream.dropped_ = std::size_t(std::count(stream.bad_.begin(), stream.bad_.end(), 1));
   return stream;
 }
 

@@ -48,6 +48,7 @@ MapResult buildClustering(const FragmentStream&, const VisibilityOptions&, const
                           const Context&);
 MapResult buildDeepOpacity(const FragmentStream&, const VisibilityOptions&, const ChannelSource&,
                            const Context&);
+MapResult buildGrid(const FragmentStream&, const VisibilityOptions&, const ChannelSource&, const Context&);
 MapResult buildOccupancy(const FragmentStream&, const VisibilityOptions&, const ChannelSource&,
                          const Context&);
 MapResult buildExact(const FragmentStream&, const VisibilityOptions&, const ChannelSource&, const Context&);

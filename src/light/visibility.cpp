@@ -33,7 +33,7 @@ Status check(const FragmentStream& stream, const VisibilityOptions& options, con
       options.occupancySlices % (32 * options.slabs) != 0) {
     wrong = "occupancy slices have to fill whole words of 32 in each of 1 … 32 slabs";
   }
-  if (!within(options.gridLog2Size, 2, 9)) wrong = "a light map has 4 … 512 cells a side";
+  if (!within(options.gridLog2Size, 3, 9)) wrong = "a light map has 8 … 512 cells a side";
   if (!within(channels.count, 0, ChannelSource::kMost) || (channels.count > 0 && !channels.fill)) {
     wrong = "a map sums at most 15 further channels, each with a source";
   }
@@ -184,6 +184,8 @@ MapResult buildVisibility(const FragmentStream& stream, const VisibilityOptions&
         return buildClustering(stream, options, channels, context);
       case VisibilityMethod::DeepOpacity:
         return buildDeepOpacity(stream, options, channels, context);
+      case VisibilityMethod::LightMap:
+        return buildGrid(stream, options, channels, context);
       case VisibilityMethod::Occupancy:
         return buildOccupancy(stream, options, channels, context);
       case VisibilityMethod::Exact:

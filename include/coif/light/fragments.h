@@ -81,6 +81,18 @@ class FragmentStream {
   const StrandSet& strands() const { return *strands_; }
   std::size_t texelCount() const { return std::size_t(view_.size) * std::size_t(view_.size); }
   std::size_t droppedStrands() const { return dropped_; }
+  /// All points and widths are finite.
+  bool usableStrand(std::size_t s) const { return bad_.empty() || !bad_[s]; }
+  /// Diameter in scene units and opacity at a point, as the fragments have them.
+  double widthAt(std::uint32_t point) const {
+    return widthFactor_ * (strands_->widths.empty() ? 1.0 : double(strands_->widths[point]));
+  }
+  double opacityAt(std::uint32_t point) const {
+    const auto& transparencies = strands_->transparencies;
+    return transparencies.empty()
+               ? options_.opacity
+               : options_.opacity * (1 - std::clamp(double(transparencies[point]), 0., 1.));
+  }
   int bandCount() const { return (view_.size + kBandRows - 1) / kBandRows; }
 
   /// call(fragment) for the fragments in rows [band · kBandRows, …), segments in ascending order.
@@ -95,17 +107,8 @@ class FragmentStream {
   struct Chunk {
     std::vector<std::vector<std::uint32_t>> bands;  ///< first points of the segments that touch the band
   };
-  Chunk binned(std::size_t firstStrand, std::size_t endStrand, std::size_t& dropped) const;
+  Chunk binned(std::size_t firstStrand, std::size_t endStrand);
   bool finiteStrand(std::size_t s) const;
-  double widthAt(std::uint32_t point) const {
-    return widthFactor_ * (strands_->widths.empty() ? 1.0 : double(strands_->widths[point]));
-  }
-  double opacityAt(std::uint32_t point) const {
-    const auto& transparencies = strands_->transparencies;
-    return transparencies.empty()
-               ? options_.opacity
-               : options_.opacity * (1 - std::clamp(double(transparencies[point]), 0., 1.));
-  }
   bool hidden(std::uint32_t texel, double depth) const;
 
   const StrandSet* strands_ = nullptr;
@@ -113,6 +116,7 @@ class FragmentStream {
   FragmentOptions options_;
   double widthFactor_ = 1;
   std::vector<Chunk> chunks_;
+  std::vector<std::uint8_t> bad_;  ///< a flag a strand
   std::size_t dropped_ = 0;
 };
 

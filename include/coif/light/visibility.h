@@ -39,7 +39,7 @@ struct VisibilityOptions {
   double layerSize = 0;       ///< s; 0: chooseLayerSize
   int occupancySlices = 128;  ///< Occupancy: up to 1024, a multiple of 32 · slabs
   int slabs = 4;              ///< 1 … 32
-  int gridLog2Size = 7;       ///< LightMap: 2 … 9, cells a side
+  int gridLog2Size = 7;       ///< LightMap: 3 … 9, of cells a side
   bool filter = false;  ///< T (and sums) from the four nearest texels, bilinear; depths are never filtered
   const OpaqueMap* opaque = nullptr;  ///< same view; behind it T = 0. Must outlive the map
 };

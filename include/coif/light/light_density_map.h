@@ -1,0 +1,60 @@
+// The light-oriented density map (Bertails et al. 2005) on the CPU: hair's coverage in cells along the light,
+// summed by columns.
+//
+// A cell's optical depth is κ ds = Σ ℓ D |sin ψ| / ds² over the pieces of hair clipped to it. T lives on the
+// face where the light leaves the cell, so that a point in cell k mixes the faces of k − 1 and k along the
+// light, and the four cells around it across. Addresses wrap (floor, then modulo) and cells are anchored to
+// the scene, so that moving hair uses the same memory and does not flicker against the grid. A point light
+// takes cells even in its map's plane and in 1 / depth: straight hairs stay straight there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "coif/light/fragments.h"
+#include "coif/strands/density_grid.h"
+
+namespace coif {
+
+struct LightDensityOptions {
+  int log2Size = 7;   ///< 3 … 9: cells a side
+  double cell = 0;    ///< ds, scene units; 0: fits the hair's box. not used by a point light
+  bool grows = true;  ///< a cell too small for the hair is doubled until it fits; else TooLarge
+};
+
+/// Queries are const and thread-safe.
+class LightDensityMap {
+ public:
+  /// The strands and opacity of `stream`, along its view's light. Errors: InvalidArgument, TooLarge (see
+  /// grows), Cancelled.
+  static Result<LightDensityMap> make(const FragmentStream& stream, const LightDensityOptions& options = {},
+                                      const Context& context = {});
+  /// The same for strands that moved, in the same memory; the cell stays unless it has to grow.
+  Status update(const FragmentStream& stream, const Context& context = {});
+
+  double transmittance(const Vec3& world) const;
+  double cell() const { return cell_; }
+  std::size_t bytes() const { return values_.size() * sizeof(float) + touched_.size(); }
+  std::size_t droppedStrands() const { return dropped_; }
+
+ private:
+  Vec3 cellsOf(const Vec3& world) const;
+  bool gather(const FragmentStream& stream, const Context& context);
+  void fitCell(const FragmentStream& stream);
+  void accumulate(int slab, const GridDeposit& deposit);
+  float face(long i, long j, long k) const;
+
+  LightView view_;
+  LightDensityOptions options_;
+  double cell_ = 1;
+  Vec3 low_ = Vec3::Zero();   ///< corner of the hair's box in the light's frame when the map was made
+  Vec3 base_ = Vec3::Zero();  ///< whole cells, taken off so that floats stay fine far from the scene's origin
+  double inverseNear_ = 1, inverseFar_ = 0;  ///< of a point light's depth
+  std::array<long, 3> first_{0, 0, 0};
+  std::vector<GridPoint> points_;
+  std::vector<float> values_;  ///< T on the exit faces, GridFrame::index order
+  std::vector<std::uint8_t> touched_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace coif
