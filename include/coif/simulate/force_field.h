@@ -32,6 +32,8 @@ class ForceField {
   virtual double energy(std::uint32_t node, const Vec3& position) const = 0;
   /// Whether the field can act on anything this step; a field that cannot is left out of the solve.
   virtual bool active() const { return true; }
+  /// Why it is left out, for reports; empty while it is active.
+  virtual const char* idleReason() const { return ""; }
 };
 
 }  // namespace coif
