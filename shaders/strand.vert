@@ -15,7 +15,7 @@ flat out uint seed;
 vec3 throughHair(float depth, vec3 c) { return exp(-depth * shadowRight.w * (1.0 - 0.72 * pow(c, vec3(0.38)))); }
 
 void main() {
-  StrandPoint p = strandPointAt(gl_VertexID >> 1);
+  StrandPoint p = strandPointAt(strandVertex());
   seed = floatBitsToUint(p.tangentSeed.w);
   vec3 worldPosition = p.positionWidth.xyz, tangent = p.tangentSeed.xyz;
   vec3 toEye = eye.xyz - worldPosition;
@@ -28,7 +28,7 @@ void main() {
   vec3 side = cross(tangent, toEye);
   float sideLength = length(side);
   side = sideLength > 1e-6 * length(toEye) ? side / sideLength : vec3(0);
-  vec3 corner = worldPosition + side * (0.5 * ribbon) * ((gl_VertexID & 1) == 0 ? -1.0 : 1.0);
+  vec3 corner = worldPosition + side * (ribbon * strandSide());
   gl_Position = clipFromWorld * vec4(corner, 1);
 
   // Each hair a little lighter or darker, warmer or cooler than the next.
@@ -41,7 +41,7 @@ void main() {
   float sky = 1.0;
 #ifdef SHADOWS
   uint frame = uint(viewport.z);
-  float a = 6.2831853 * random3(seed, uint(gl_VertexID >> 1), frame), r = 1.6 * sqrt(random3(seed, frame, 3u));
+  float a = 6.2831853 * random3(seed, uint(strandVertex()), frame), r = 1.6 * sqrt(random3(seed, frame, 3u));
   vec2 key = keyVisibility(worldPosition, r * vec2(cos(a), sin(a)));
   vec4 volume = volumeAt(worldPosition);
   reach[0] = key.y * throughHair(key.x, baseColor);

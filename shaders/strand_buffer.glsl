@@ -1,5 +1,14 @@
-// Strand points as the passes see them: the index names (point, side), vertex v is side v & 1 of point v >> 1.
-// Passes call strandPointAt and know nothing of how points are kept or made (synthesis.glsl).
+// Strand points as the passes see them. Passes call strandPointAt(strandVertex()) and know nothing of how points are
+// kept or made (synthesis.glsl). Ribbons: vertex v is side v & 1 of point v >> 1. LINES: vertex v is point v; a line is
+// a pixel wide, half the vertices and one primitive where a ribbon needs two, and does for hairs that are no wider.
+#ifdef COMPUTE
+#elif defined(LINES)
+int strandVertex() { return gl_VertexID; }
+float strandSide() { return 0.0; }
+#else
+int strandVertex() { return gl_VertexID >> 1; }
+float strandSide() { return (gl_VertexID & 1) == 0 ? -0.5 : 0.5; }
+#endif
 struct StrandPoint {
   vec4 positionWidth;   // diameter in w
   vec4 tangentSeed;     // unit tangent, or zero; strand seed as bits in w

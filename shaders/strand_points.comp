@@ -1,4 +1,5 @@
 // Points and strip indices of all strands of a batch, one invocation a point.
+#define COMPUTE
 #define SYNTHESISE_IN_PLACE
 #include "strand_buffer.glsl"
 layout(local_size_x = 64) in;
@@ -6,14 +7,15 @@ layout(std430, binding = 0) writeonly buffer StrandPoints { PackedPoint strandPo
 layout(std430, binding = 7) writeonly buffer Indices { uint indices[]; };
 layout(location = 0) uniform uint pointCount;
 layout(location = 1) uniform uint firstIndex;
+layout(location = 2) uniform bool lines;      // a strip of lines a strand, not of ribbons
 
 void main() {
   uint point = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
   if (point >= pointCount) return;
   Place place = placeOf(point);
   strandPoints[point] = packPoint(synthesise(place));
-  uint index = firstIndex + 2u * point + shares[place.share].strandStart + place.strand;
-  indices[index] = 2u * point;
-  indices[index + 1u] = 2u * point + 1u;
-  if (place.sampleIndex + 1u == shares[place.share].samples) indices[index + 2u] = 0xffffffffu;
+  uint width = lines ? 1u : 2u;
+  uint index = firstIndex + width * point + shares[place.share].strandStart + place.strand;
+  for (uint k = 0u; k < width; ++k) indices[index + k] = width * point + k;
+  if (place.sampleIndex + 1u == shares[place.share].samples) indices[index + width] = 0xffffffffu;
 }

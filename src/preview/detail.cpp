@@ -160,6 +160,19 @@ double meanWidthPx(const HairModel& model, const PixelSize& pixelAt) {
   return looked > 0 ? sum / double(looked) : 0;
 }
 
+/// Diameter in pixels that hardly a point exceeds, before widening.
+double greatestWidthPx(const HairModel& model, const PixelSize& pixelAt) {
+  constexpr double kHardly = 0.002;
+  const auto& points = model.coarse.points;
+  std::vector<double> widths;
+  for (std::size_t p = 0; p < points.size(); p += std::max<std::size_t>(points.size() / 8192, 1))
+    widths.push_back(points[p].width / model.coarse.scale / pixelAt(points[p].position.cast<double>()));
+  if (widths.empty()) return 0;
+  const auto nth = widths.end() - 1 - std::ptrdiff_t(kHardly * double(widths.size()));
+  std::nth_element(widths.begin(), nth, widths.end());
+  return *nth;
+}
+
 std::size_t prefixLength(const HairModel& model, double meanSegments, const DetailOptions& options,
                          const PixelSize& pixelAt) {
   const double count = double(model.strands);
@@ -233,6 +246,7 @@ DetailPlan makePlan(const HairModel& model, const DetailOptions& options, const 
   const std::size_t prefix =
       prefixLength(model, segments / std::max<double>(double(model.strands), 1), options, pixelAt);
   plan.widthScale = model.baseScale * (prefix > 0 ? double(model.strands) / double(prefix) : 1);
+  plan.lines = options.lines && plan.widthScale * greatestWidthPx(model, pixelAt) <= 1;
   for (std::size_t l = 0; l < parameters.size(); ++l) {
     if (parameters[l].empty()) continue;
     const auto& ranks = model.members[l].ranks;

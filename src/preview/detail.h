@@ -30,6 +30,7 @@ struct DetailPlan {
   std::vector<float> parameters;  ///< of samples, 0 … height
   std::size_t strands = 0, points = 0, columns = 0;
   double widthScale = 1;
+  bool lines = false;  ///< no strand is wider than a pixel: lines do
 
   std::size_t segments() const { return points - strands; }
   std::size_t bytes() const { return shares.size() * sizeof(Share) + parameters.size() * sizeof(float); }
@@ -44,6 +45,7 @@ struct DetailOptions {
   double longestPx = 32;             ///< of a segment, as shading is interpolated along it
   double ribbonPx = 0.4;             ///< strands are widened to about this
   std::size_t leastStrands = 12000;  ///< below, single hairs are told apart
+  bool lines = true;                 ///< where no strand is wider than a pixel
   std::size_t batchPoints = 1u << 22;
   bool operator==(const DetailOptions&) const = default;
 };

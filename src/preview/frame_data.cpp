@@ -23,6 +23,7 @@ Result<View> makeView(const Camera& camera, const Box& scene, int width, int hei
   view.forward = frame.forward;
   view.right = frame.right;
   view.up = frame.up;
+  view.cameraUp = camera.up.normalized();
   view.width = width;
   view.height = height;
   view.pixelAtOne = 2 * frame.slopeY / height;
@@ -71,7 +72,7 @@ FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions
   frame.clipFromWorld = clipFromWorld(view, Vec2::Zero());
   frame.eye = vec4(view.eye, view.pixelAtOne);
   frame.viewForward = vec4(view.forward, view.nearest);
-  frame.viewUp = vec4(view.up);
+  frame.viewUp = vec4(lights.followCamera ? view.up : view.cameraUp);  // the middle of the sky
   frame.viewport =
       Vec4f(float(view.width), float(view.height), 0, options.transparentBackground ? 1.0f : 0.0f);
   const Light* three[] = {&lights.key, &lights.fill, &lights.rim};

@@ -26,6 +26,7 @@ static_assert(sizeof(FrameData) == 16 * (8 + 4 + 6 + 2 + 2 + 4 + 4), "as std140 
 /// The camera's orthonormal frame and what a pixel measures.
 struct View {
   Vec3 eye, right, up, forward;
+  Vec3 cameraUp;                     ///< as the camera has it, unit: not tilted with the view
   double pixelAtOne = 0;             ///< world size of a pixel at distance 1
   double nearest = 0, farthest = 0;  ///< depth range that holds the scene
   int width = 0, height = 0;

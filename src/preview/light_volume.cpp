@@ -81,24 +81,27 @@ std::vector<Vec3> skyDirections(const Vec3& up) {
 
 void light(LightVolume& grid, std::span<const float> optical, const Vec3 (&lights)[3], const Vec3& up,
            const Context& context) {
+  std::vector<Vec3> directions(lights, lights + 3);
+  for (const Vec3& direction : skyDirections(up)) directions.push_back(direction);
+  std::vector<std::vector<float>> depths(directions.size());
+  parallelFor(context, directions.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(grid, optical, directions[d]);
+  });
   grid.values.assign(optical.size(), Vec4f::Zero());
-  for (int l = 0; l < 3; ++l) {
-    const auto depth = sweepOpticalDepth(grid, optical, lights[l], context);
-    for (std::size_t i = 0; i < depth.size(); ++i) grid.values[i][l] = depth[i];
-  }
-  const auto sky = skyDirections(up);
-  for (const Vec3& direction : sky) {
-    const auto depth = sweepOpticalDepth(grid, optical, direction, context);
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-      grid.values[i][3] += std::exp(-kSkyOpacity * depth[i]) / float(sky.size());
+  const float part = 1 / float(directions.size() - 3);
+  parallelFor(context, optical.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int l = 0; l < 3; ++l) grid.values[i][l] = depths[std::size_t(l)][i];
+      for (std::size_t d = 3; d < depths.size(); ++d)
+        grid.values[i][3] += part * std::exp(-kSkyOpacity * depths[d][i]);
     }
-  }
+  });
 }
 
 }  // namespace
 
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
-                                     const Vec3& direction, const Context& context) {
+                                     const Vec3& direction) {
   const std::array<int, 3> size{grid.nx, grid.ny, grid.nz};
   const std::array<std::size_t, 3> stride{1, std::size_t(grid.nx), std::size_t(grid.nx) * grid.ny};
   int axis = 0;
@@ -121,16 +124,14 @@ std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const fl
   };
   for (int k = 0; k < size[axis]; ++k) {
     const std::size_t slice = std::size_t(fromHigh ? size[axis] - 1 - k : k) * stride[axis];
-    parallelFor(context, std::size_t(size[v]), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j) {
-        for (int i = 0; i < size[u]; ++i) {
-          const std::size_t index = slice + j * stride[v] + std::size_t(i) * stride[u];
-          const float in = upstream(i + du, double(j) + dv), own = opticalSize[index] * float(per);
-          result[index] = in + 0.5f * own;
-          after[j * size[u] + i] = in + own;
-        }
+    for (int j = 0; j < size[v]; ++j) {
+      for (int i = 0; i < size[u]; ++i) {
+        const std::size_t index = slice + std::size_t(j) * stride[v] + std::size_t(i) * stride[u];
+        const float in = upstream(i + du, j + dv), own = opticalSize[index] * float(per);
+        result[index] = in + 0.5f * own;
+        after[std::size_t(j) * size[u] + i] = in + own;
       }
-    });
+    }
     std::swap(before, after);
   }
   return result;

@@ -34,6 +34,6 @@ LightVolumes makeLightVolumes(const CoarseStrands& strands, const PolygonMesh* h
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
-                                     const Vec3& direction, const Context& context);
+                                     const Vec3& direction);
 
 }  // namespace coif::preview

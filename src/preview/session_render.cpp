@@ -71,6 +71,7 @@ DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
   DetailOptions detail;
   detail.lod = options.lod;
   detail.fraction = options.strandFraction;
+  detail.lines = options.lod && options.lines;
   detail.batchPoints = device.mostBatchPoints;
   detail.maxSegments = options.maxSegments > 0 ? options.maxSegments
                        : device.gl->software() ? kSoftwareSegments
@@ -161,7 +162,8 @@ void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan,
   } else {
     picture.uploaded.plan += plan.bytes();
     strands.reset();  // first, so that both need not fit
-    strands = std::make_unique<StrandBuffers>(model, hair, programs, std::move(plan));
+    const Topology topology = plan.lines ? Topology::Lines : Topology::Ribbons;
+    strands = std::make_unique<StrandBuffers>(model, hair, programs, std::move(plan), topology);
   }
   stage.bytes = strands->bytes();
   old = false;
@@ -271,7 +273,10 @@ void PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
   }
   if (hair) {
     shadows->bindForHair();
-    glUseProgram(programs[options.shadows ? ProgramId::Strands : ProgramId::StrandsPlain]);
+    const bool lines = eyeStrands->topology() == Topology::Lines;
+    glUseProgram(
+        programs[options.shadows ? (lines ? ProgramId::StrandsLines : ProgramId::Strands)
+                                 : (lines ? ProgramId::StrandsPlainLines : ProgramId::StrandsPlain)]);
     eyeStrands->draw();
   }
   if (overlayPass != nullptr) overlayPass->draw(programs);

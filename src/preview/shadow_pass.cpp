@@ -95,14 +95,16 @@ ShadowPass::ShadowPass(const Programs& programs, const Box& scene, const CoarseS
   if (buffers != nullptr) {
     const Framebuffer front = depthTarget(hairFront_);
     glBindFramebuffer(GL_FRAMEBUFFER, front.name());
-    glUseProgram(programs[ProgramId::ShadowFront]);
+    glUseProgram(programs[buffers->topology() == Topology::Lines ? ProgramId::ShadowFrontLines
+                                                                 : ProgramId::ShadowFront]);
     buffers->draw();
     glDisable(GL_DEPTH_TEST);
     const Framebuffer layers = makeFramebuffer();
     glNamedFramebufferTexture(layers.name(), GL_COLOR_ATTACHMENT0, hairLayers_.name(), 0);
     glBindFramebuffer(GL_FRAMEBUFFER, layers.name());
     glBindTextureUnit(2, hairFront_.name());
-    glUseProgram(programs[ProgramId::ShadowLayers]);
+    glUseProgram(programs[buffers->topology() == Topology::Lines ? ProgramId::ShadowLayersLines
+                                                                 : ProgramId::ShadowLayers]);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     buffers->draw();

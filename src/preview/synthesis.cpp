@@ -93,14 +93,14 @@ void HairBuffers::bindForPoints(bool synthesised) const {
 }
 
 StrandBuffers::StrandBuffers(const HairModel& model, const HairBuffers& hair, const Programs& programs,
-                             DetailPlan plan)
-    : plan_(std::move(plan)), array_(makeVertexArray()) {
+                             DetailPlan plan, Topology topology)
+    : plan_(std::move(plan)), topology_(topology), array_(makeVertexArray()) {
   std::size_t points = 0, indices = 0;
   for (const Batch& batch : plan_.batches) {
     pointOffsets_.push_back(points);
     indexOffsets_.push_back(indices);
     points += (batch.points + kAlign - 1) / kAlign * kAlign;
-    indices += 2 * std::size_t(batch.points) + batch.strands;
+    indices += std::size_t(indexCount(batch));
   }
   shares_ = makeBuffer(std::span<const Share>(plan_.shares));
   parameters_ = makeBuffer(std::span<const float>(plan_.parameters));
@@ -129,6 +129,7 @@ void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const 
   glUseProgram(programs[model.synthesised ? ProgramId::StrandPoints : ProgramId::StrandPointsImported]);
   hair.bindForPoints(model.synthesised);
   bind(2, shares_), bind(6, columns_), bind(7, indices_);
+  glUniform1i(2, topology_ == Topology::Lines ? 1 : 0);
   glUniform1f(12, float(plan_.widthScale));
   glUniform1i(13, model.colored ? 1 : 0);
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
@@ -145,6 +146,11 @@ void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const 
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+GLsizei StrandBuffers::indexCount(const Batch& batch) const {
+  const std::size_t width = topology_ == Topology::Lines ? 1 : 2;
+  return GLsizei(width * batch.points + batch.strands);
+}
+
 void StrandBuffers::draw() const {
   if (plan_.points == 0) return;
   glEnable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
@@ -153,8 +159,8 @@ void StrandBuffers::draw() const {
     const Batch& batch = plan_.batches[b];
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
                       GLsizeiptr(batch.points * kPackedPoint));
-    glDrawElements(GL_TRIANGLE_STRIP, GLsizei(2 * std::size_t(batch.points) + batch.strands), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(indexOffsets_[b] * 4));
+    glDrawElements(topology_ == Topology::Lines ? GL_LINE_STRIP : GL_TRIANGLE_STRIP, indexCount(batch),
+                   GL_UNSIGNED_INT, reinterpret_cast<const void*>(indexOffsets_[b] * 4));
   }
   glDisable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
 }

@@ -25,15 +25,19 @@ class HairBuffers {
   Buffer locks_, bundleVertices_, vertices_, roots_, weights_, points_, colors_;
 };
 
-/// The points and triangle strips of a plan, made on the GPU.
+enum class Topology { Ribbons, Lines };
+
+/// The points and strips of a plan, made on the GPU.
 class StrandBuffers {
  public:
   explicit StrandBuffers(const HairModel& model, const HairBuffers& hair, const Programs& programs,
-                         DetailPlan plan);
+                         DetailPlan plan, Topology topology);
   /// Makes the points again, after the mesh moved.
   void make(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
-  /// All ribbons, with the bound program.
+  /// All strips, with the bound program. Vertex v is side v & 1 of point v >> 1 of a ribbon, or point v of a
+  /// line.
   void draw() const;
+  Topology topology() const { return topology_; }
   const DetailPlan& plan() const { return plan_; }
   std::size_t bytes() const { return bytes_; }  ///< of points and indices
 
@@ -50,7 +54,10 @@ class StrandBuffers {
  private:
   void makeColumns(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
 
+  GLsizei indexCount(const Batch& batch) const;
+
   DetailPlan plan_;
+  Topology topology_ = Topology::Ribbons;
   std::size_t bytes_ = 0;
   std::vector<std::size_t> pointOffsets_, indexOffsets_;  ///< of batches, in points and indices
   Buffer shares_, parameters_, columns_, points_, indices_;

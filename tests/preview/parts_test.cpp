@@ -63,7 +63,7 @@ TEST(LightVolume, SweepsAUniformFogExactly) {
     for (const double sign : {-1.0, 1.0}) {
       Vec3 direction = Vec3::Zero();
       direction[axis] = sign;
-      const auto depth = sweepOpticalDepth(grid, fog, direction, {});
+      const auto depth = sweepOpticalDepth(grid, fog, direction);
       const int cell[3] = {17, 11, 8}, size[3] = {40, 30, 20};
       const double before = sign > 0 ? size[axis] - 1 - cell[axis] : cell[axis];
       EXPECT_NEAR(at(depth, 17, 11, 8), 0.1 * (before + 0.5), 1e-5);  // 40 sums in float
@@ -71,7 +71,7 @@ TEST(LightVolume, SweepsAUniformFogExactly) {
   }
   // Oblique, the way to the top stays inside: the distance is longer by 1 / cos.
   const Vec3 oblique = Vec3(0.3, -0.2, 1).normalized();
-  EXPECT_NEAR(at(sweepOpticalDepth(grid, fog, oblique, {}), 20, 15, 10), 0.1 * 9.5 / oblique.z(), 1e-5);
+  EXPECT_NEAR(at(sweepOpticalDepth(grid, fog, oblique), 20, 15, 10), 0.1 * 9.5 / oblique.z(), 1e-5);
 }
 
 }  // namespace

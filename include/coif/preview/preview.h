@@ -46,6 +46,7 @@ struct PreviewOptions {
   double strandFraction =
       0;  ///< with lod: part of the strands to draw, 0 … 1; 0: by their width on the screen
   std::size_t maxSegments = 0;  ///< with lod: bound on ribbon segments; 0: by the machine
+  bool lines = true;            ///< with lod: hairs thinner than a pixel are lines, at half a ribbon's cost
   bool keep = true;             ///< false: a session makes everything again, as if all had changed
   bool measure = false;         ///< wait for the GPU after each stage, so that its seconds are its own
 };
