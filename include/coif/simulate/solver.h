@@ -59,6 +59,7 @@ struct ChainState {
   std::vector<Vec3> previousPositions, previousVelocities;  ///< one step back, for DirectBdf2
   std::vector<Mat3> rootFrames;                             ///< T
   std::vector<std::uint32_t> quietSteps;                    ///< T: steps at rest
+  std::vector<Vec3> quietForces;                            ///< of the fields when a chain fell asleep
   double time = 0;
   double previousStep = 0;  ///< 0: nothing before
 };

@@ -1,0 +1,3 @@
+#define COIF_KERNELS kKernelsBase
+#define COIF_KERNELS_NAME "baseline"
+#include "simulate/kernels.inl"
