@@ -120,7 +120,7 @@ class Direct : Lane<T, L> {
     clearFaults();
     markFaults(~(value < all(limit())) & active, LaneFault::NotFinite, active);
     for (int iteration = 0; iteration < c_.maxNewton && any(active); ++iteration) {
-      const V decrease = eliminate();  // gᵀ H⁻¹ g
+      const V decrease = eliminateSafely(active);  // gᵀ H⁻¹ g
       const V size = backSubstitute();
       markFaults(~(decrease < all(limit())) | ~(size < all(limit())), LaneFault::NotFinite, active);
       steps = pick(active, steps + 1, steps);
@@ -313,9 +313,24 @@ class Direct : Lane<T, L> {
     return m;
   }
 
+  // With the exact Hessian where it is positive definite, else with its positive part: λ and cos θ held above
+  // zero, what has no sign left out. A lane that needed this gets it the next time too, then tries again.
+  V eliminateSafely(M active) {
+    const M before = safe_;
+    V decrease = eliminate();
+    const M failed = ~positive_ & active & ~safe_;
+    if (any(failed)) {
+      safe_ |= failed;
+      decrease = eliminate();
+    }
+    safe_ &= ~before;
+    return decrease;
+  }
+
   // From tip to root. Returns gᵀH⁻¹g, twice the decrease that the quadratic model promises.
   V eliminate() {
     V decrease = all(0);
+    positive_ = all(0) == all(0);
     Model carried{};
     bool carrying = false;
     for (int i = b_.nodes - 1; i >= 0; --i) {
@@ -362,18 +377,24 @@ class Direct : Lane<T, L> {
     storeSym(s.s, m.s), store(s.force, m.force), store(s.torque, m.torque), store(s.sum, m.sum);
   }
 
+  // u·(the pull of everything beyond), positive in tension: what stiffens turns across the link.
   V tension(const V3& u, const V3& gradient) const {
     if (linear()) return all(0);
-    return max(-u.dot(gradient), all(0));
+    const V lambda = -u.dot(gradient);
+    return pick(safe_, max(lambda, all(0)), lambda);
   }
 
   struct Inverse {
     V a, b, c;
   };
-  static Inverse inverse(V a, V b, V c) {
-    const V d = 1 / (a * c - b * b);
+  // Notes lanes whose matrix is not positive there.
+  Inverse inverse(V a, V b, V c) {
+    const V det = a * c - b * b;
+    positive_ &= (a > 0) & (det > a * c * tiny());
+    const V d = 1 / det;
     return {c * d, -b * d, a * d};
   }
+  static constexpr T tiny() { return sizeof(T) == 8 ? T(1e-15) : T(1e-7); }
 
   // Without joint springs only the displacement is passed on.
   V leaveFree(int i, Model& m) {
@@ -403,24 +424,38 @@ class Direct : Lane<T, L> {
     shift(m, d);
     const V3 pull = m.force - lateral;
     m.torque = m.torque + d.cross(pull);
-    // The link's tension stiffens turns across it.
-    const V lift = tension(u, m.sum - lateral) * r;
-    m.s.addDiagonal(lift);
-    m.s.subtract(u * lift, u);
+    const V3 gradient = m.sum - lateral;
+    stiffen(m.s, u, tension(u, gradient) * r, gradient - u * u.dot(gradient), r);
     V3 e1, e2;
     basis(u, e1, e2);
-    const V3 moment = u.cross(load(n.target)) * kappa;
+    const V3 target = load(n.target);
+    const V3 moment = u.cross(target) * kappa;
     const V g1 = -e1.dot(moment), g2 = -e2.dot(moment);
+    // Turning the base about this link before or after the joint bends differs by a commutator.
+    const V swap = linear() ? all(0) : pick(safe_, all(0), kappa * T(0.5));
+    const V s1 = e1.dot(target) * swap, s2 = e2.dot(target) * swap;
     if (kCurved) addSpin(i, u, e1, e2);
-    return leave(n, m, e1, e2, g1, g2, jointStiffness(n, u, kappa));
+    return leave(n, m, u, e1, e2, g1, g2, s1, s2, jointStiffness(n, u, kappa));
   }
 
-  // The curvature of κ(1 − cos θ) where it is convex, κ beyond.
+  // Second derivative of the link's end under a rotation, times what pulls there:
+  // λ r |ω across u|² + r (ω·u)(ω·across), `across` the gradient's part across u.
+  void stiffen(Sym& s, const V3& u, V lift, V3 across, V r) const {
+    s.addDiagonal(lift);
+    s.subtract(u * lift, u);
+    if (linear()) return;
+    const V3 half = across * pick(safe_, all(0), r * T(0.5));
+    s.xx += 2 * u.x * half.x, s.yy += 2 * u.y * half.y, s.zz += 2 * u.z * half.z;
+    s.xy += u.x * half.y + u.y * half.x, s.xz += u.x * half.z + u.z * half.x;
+    s.yz += u.y * half.z + u.z * half.y;
+  }
+
+  // The curvature of κ(1 − cos θ); what is safe is κ where that is not convex enough.
   V jointStiffness(const Work& n, const V3& u, V kappa) const {
     if (c_.scheme == Scheme::ArticulatedExplicit) return all(0);
     if (c_.scheme == Scheme::ArticulatedImplicit) return kappa;
     const V c = u.dot(load(n.target));
-    return kappa * pick(c > T(0.5), c, all(1));
+    return kappa * pick(safe_ & ~(c > T(0.5)), all(1), c);
   }
 
   // To the base of the link: dx at its end is dx + ω × d.
@@ -447,9 +482,10 @@ class Direct : Lane<T, L> {
     e2 = e2 - u * (base.dot(e2) * by);
   }
 
-  static V leave(Work& n, Model& m, const V3& e1, const V3& e2, V g1, V g2, V kappa) {
-    const V3 x1 = m.q.times(e1), x2 = m.q.times(e2), w1 = m.s.times(e1), w2 = m.s.times(e2);
-    const Inverse k = inverse(e1.dot(w1) + kappa, e1.dot(w2), e2.dot(w2) + kappa);
+  V leave(Work& n, Model& m, const V3& u, const V3& e1, const V3& e2, V g1, V g2, V s1, V s2, V kappa) {
+    const V3 x1 = m.q.times(e1), x2 = m.q.times(e2), t1 = m.s.times(e1), t2 = m.s.times(e2);
+    const V3 w1 = t1 + u * s1, w2 = t2 + u * s2;
+    const Inverse k = inverse(e1.dot(t1) + kappa, e1.dot(t2), e2.dot(t2) + kappa);
     g1 += e1.dot(m.torque), g2 += e2.dot(m.torque);
     const V a1 = k.a * g1 + k.b * g2, a2 = k.b * g1 + k.c * g2;
     const V3 kx1 = x1 * k.a + x2 * k.b, kx2 = x1 * k.b + x2 * k.c;
@@ -553,6 +589,7 @@ class Direct : Lane<T, L> {
   Block<T, L>& b_;
   const StepConstants& c_;
   V scale_ = all(0);
+  M safe_ = all(0) != all(0), positive_ = safe_;
 };
 
 template <class T, int L>

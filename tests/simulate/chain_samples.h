@@ -30,7 +30,8 @@ inline ChainSet copies(const ChainSet& one, std::size_t count) {
   for (std::size_t k = 1; k < count; ++k) {
     const auto base = std::uint32_t(all.nodeCount());
     for (const std::uint32_t p : one.parents) all.parents.push_back(p == kNone ? kNone : p + base);
-    for (std::size_t t = 0; t < one.treeCount(); ++t) all.treeOffsets.push_back(base + one.treeOffsets[t + 1]);
+    for (std::size_t t = 0; t < one.treeCount(); ++t)
+      all.treeOffsets.push_back(base + one.treeOffsets[t + 1]);
     repeat(all.lengths, one.lengths), repeat(all.restDirections, one.restDirections);
     repeat(all.stiffness, one.stiffness), repeat(all.masses, one.masses), repeat(all.drags, one.drags);
     repeat(all.radii, one.radii), repeat(all.restPositions, one.restPositions);
