@@ -72,7 +72,7 @@ Result<Hairstyle> bun(const StyleInput& input) {
     scalpPart.insert(scalpPart.end(), knotPart.begin() + 1, knotPart.end());
     return scalpPart;
   };
-  const auto targets = targetsOf(mesh, input, std::vector<int>(mesh.vertices().size(), 0), guide);
+  const auto targets = targetsOf(mesh, input, std::vector<Lie>(mesh.vertices().size()), guide);
   SettleOptions options;
   options.tolerance = 0.012;
   COIF_ASSIGN(const HairstyleReport report,

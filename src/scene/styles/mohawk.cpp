@@ -58,12 +58,12 @@ Result<Hairstyle> mohawk(const StyleInput& input) {
   COIF_TRY(extrudeLayers(mesh, strip, 5));
   if (!sides.empty()) COIF_TRY(extrudeLayers(mesh, sides, 1));
   // A root on the strip's border stands and lies at once: its columns are told apart by their height.
-  std::vector<int> kinds(mesh.vertices().size(), 0);
+  std::vector<Lie> kinds(mesh.vertices().size());
   for (const Bundle& bundle : mesh.bundles()) {
-    for (std::uint32_t v : bundle.vertices) kinds[v] = bundle.height() > 1 ? 1 : kinds[v];
+    for (std::uint32_t v : bundle.vertices) kinds[v].side = bundle.height() > 1 ? 1 : kinds[v].side;
   }
   const auto targets = targetsOf(
-      mesh, input, kinds, [](const Root& root) { return root.side == 1 ? crest(root) : stubble(root); });
+      mesh, input, kinds, [](const Root& root) { return root.lie.side == 1 ? crest(root) : stubble(root); });
   COIF_ASSIGN(const HairstyleReport report,
               settle(mesh, targets, input.head, input.space, {}, input.context));
   return Hairstyle{std::move(mesh), report};

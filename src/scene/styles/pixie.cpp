@@ -32,7 +32,7 @@ Result<Hairstyle> pixie(const StyleInput& input) {
     };
     return comb(input.head, input.space, root.point, root.normal, options);
   };
-  const auto targets = targetsOf(mesh, input, std::vector<int>(mesh.vertices().size(), 0), guide);
+  const auto targets = targetsOf(mesh, input, std::vector<Lie>(mesh.vertices().size()), guide);
   COIF_ASSIGN(const HairstyleReport report,
               settle(mesh, targets, input.head, input.space, {}, input.context));
   return Hairstyle{std::move(mesh), report};

@@ -86,12 +86,12 @@ std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh) {
   return roots;
 }
 
-std::vector<int> sidesOf(const HairMesh& mesh, const std::function<bool(std::uint32_t)>& left) {
+std::vector<int> sidesOf(const HairMesh& mesh, const BundleSide& negative) {
   constexpr int kUnseen = 2;
   std::vector<int> sides(mesh.vertices().size(), kUnseen);
-  for (std::uint32_t bundle = 0; bundle < mesh.bundles().size(); ++bundle) {
-    const int side = left(bundle) ? -1 : 1;
-    for (std::uint32_t v : mesh.bundles()[bundle].vertices) {
+  for (const Bundle& bundle : mesh.bundles()) {
+    const int side = negative(bundle) ? -1 : 1;
+    for (std::uint32_t v : bundle.vertices) {
       sides[v] = sides[v] == kUnseen || sides[v] == side ? side : 0;
     }
   }

@@ -26,8 +26,10 @@ Result<HairstyleReport> settle(HairMesh& mesh, std::vector<Vec3> targets, const 
 /// The root vertex (index) below each vertex.
 std::vector<std::uint32_t> rootAncestors(const HairMesh& mesh);
 
-/// The side of the parting that each vertex's bundles lie on: −1, +1, or 0 where bundles of both sides meet
-/// in it. `left` says it of a bundle by index.
-std::vector<int> sidesOf(const HairMesh& mesh, const std::function<bool(std::uint32_t bundle)>& left);
+/// Which of two kinds a bundle is of: true is the negative one.
+using BundleSide = std::function<bool(const Bundle&)>;
+
+/// The kind of each vertex's bundles: −1, +1, or 0 where bundles of both meet in it.
+std::vector<int> sidesOf(const HairMesh& mesh, const BundleSide& negative);
 
 }  // namespace coif::styles

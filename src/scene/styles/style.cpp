@@ -36,7 +36,7 @@ Status extrudeLayers(HairMesh& mesh, std::span<const BundleId> bundles, std::uin
   return {};
 }
 
-std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const std::vector<int>& sides,
+std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const std::vector<Lie>& lies,
                             const GuideMaker& guide) {
   const auto roots = rootsOf(mesh, input);
   const auto ancestors = rootAncestors(mesh);
@@ -45,19 +45,20 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
   for (const Bundle& bundle : mesh.bundles()) {
     for (std::uint32_t v : bundle.vertices) tops[v] = std::max(tops[v], bundle.height());
   }
-  // One guide a root, side and column height; several vertices share each.
-  using Key = std::tuple<std::uint32_t, int, std::uint32_t>;
+  // One guide a root, lie and column height; several vertices share each.
+  using Key = std::tuple<std::uint32_t, int, int, std::uint32_t>;
+  const auto keyOf = [&](std::uint32_t v) { return Key(ancestors[v], lies[v].side, lies[v].depth, tops[v]); };
   std::map<Key, Guide> guides;
   for (std::uint32_t v = 0; v < ancestors.size(); ++v) {
-    if (mesh.vertices()[v].layer > 0) guides[{ancestors[v], sides[v], tops[v]}];
+    if (mesh.vertices()[v].layer > 0) guides[keyOf(v)];
   }
   std::vector<std::pair<const Key, Guide>*> work;
   for (auto& entry : guides) work.push_back(&entry);
   parallelFor(input.context, work.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto& [root, side, top] = work[i]->first;
+      const auto& [root, side, depth, top] = work[i]->first;
       Root at = roots[root];
-      at.side = side;
+      at.lie = {side, depth};
       Guide made = guide(at);
       work[i]->second = made.size() == top + 1 ? std::move(made) : resample(made, top + 1);
     }
@@ -65,36 +66,34 @@ std::vector<Vec3> targetsOf(const HairMesh& mesh, const StyleInput& input, const
   std::vector<Vec3> targets(ancestors.size());
   for (std::uint32_t v = 0; v < targets.size(); ++v) {
     const HairVertex& vertex = mesh.vertices()[v];
-    targets[v] = vertex.layer == 0
-                     ? vertex.position
-                     : input.space.toScene(guides.at({ancestors[v], sides[v], tops[v]})[vertex.layer]);
+    targets[v] = vertex.layer == 0 ? vertex.position : input.space.toScene(guides.at(keyOf(v))[vertex.layer]);
   }
   return targets;
 }
 
-bool onLeft(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle) {
-  double sum = 0;
-  for (std::uint32_t v : bundle.face(0)) sum += input.space.fromScene(mesh.position(v)).x();
-  return sum < 0;
+Vec3 middleOf(const HairMesh& mesh, const StyleInput& input, const Bundle& bundle) {
+  Vec3 sum = Vec3::Zero();
+  for (std::uint32_t v : bundle.face(0)) sum += input.space.fromScene(mesh.position(v));
+  return sum / double(bundle.corners);
 }
 
-std::size_t separateParting(HairMesh& mesh, const StyleInput& input, double back) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> left;  // of the first bundle on each root edge
-  std::vector<EdgeRef> parting;
+std::size_t separateBetween(HairMesh& mesh, const StyleInput& input, const BundleSide& negative,
+                            std::uint32_t layer, const std::function<bool(const Vec3&)>& along) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> kinds;  // of the first bundle on each root edge
+  std::vector<EdgeRef> line;
   for (const Bundle& bundle : mesh.bundles()) {
     const auto root = bundle.face(0);
+    const bool here = negative(bundle);
     for (std::uint32_t side = 0; side < bundle.corners; ++side) {
       const std::uint32_t a = root[side], b = root[(side + 1) % bundle.corners];
-      if (std::min(input.space.fromScene(mesh.position(a)).z(), input.space.fromScene(mesh.position(b)).z()) <
-          back)
+      if (!along(input.space.fromScene(mesh.position(a))) || !along(input.space.fromScene(mesh.position(b))))
         continue;
-      const bool here = onLeft(mesh, input, bundle);
-      const auto [it, first] = left.try_emplace(std::minmax(a, b), here);
-      if (!first && it->second != here) parting.push_back({bundle.id, 1, side});
+      const auto [it, first] = kinds.try_emplace(std::minmax(a, b), here);
+      if (!first && it->second != here) line.push_back({bundle.id, layer, side});
     }
   }
   std::size_t count = 0;
-  for (const EdgeRef& edge : parting) count += separateEdge(mesh, edge).ok();
+  for (const EdgeRef& edge : line) count += separateEdge(mesh, edge).ok();
   return count;
 }
 
