@@ -17,6 +17,7 @@ constexpr Entry kBenches[] = {
     {"place", benchPlace},
     {"coordinates", benchCoordinates},
     {"strands", benchStrands},
+    {"scattering", benchScattering},
 };
 
 }  // namespace

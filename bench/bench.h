@@ -115,6 +115,7 @@ T require(Result<T> result) {
 BenchReport benchPlace(const BenchOptions& options);        ///< bench_place.cpp
 BenchReport benchCoordinates(const BenchOptions& options);  ///< bench_coordinates.cpp
 BenchReport benchStrands(const BenchOptions& options);      ///< bench_strands.cpp
+BenchReport benchScattering(const BenchOptions& options);   ///< bench_scattering.cpp
 
 }  // namespace coif
 

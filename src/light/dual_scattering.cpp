@@ -96,6 +96,16 @@ Vec3 DualScattering::back(const Vec3& wi, const Vec3& wo, const Vec3& variance, 
 }
 
 Vec3 DualScattering::evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving) const {
+  return shade(wi, wo, arriving, std::nullopt);
+}
+
+Vec3 DualScattering::evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving,
+                              double h) const {
+  return shade(wi, wo, arriving, h);
+}
+
+Vec3 DualScattering::shade(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving,
+                           std::optional<double> h) const {
   if (!wi.allFinite() || !wo.allFinite()) return Vec3::Zero();
   const double direct = arriving.directFraction >= 0 ? std::min(arriving.directFraction, 1.0) : 0;
   Vec3 scattered, variance;
@@ -107,7 +117,8 @@ Vec3 DualScattering::evaluate(const Vec3& wi, const Vec3& wo, const ForwardScatt
   Vec3 out = Vec3::Zero();
   if (direct > 0) {
     const Vec3 none = Vec3::Zero();
-    out += direct * (single(wi, wo, none, false) + parameters_.backwardDensity * back(wi, wo, none, false));
+    const Vec3 once = h ? fibre_.evaluate(wi, wo, *h) : single(wi, wo, none, false);
+    out += direct * (once + parameters_.backwardDensity * back(wi, wo, none, false));
   }
   if (scattered.maxCoeff() > 0) {
     out += scattered.cwiseProduct(single(wi, wo, variance, true) +

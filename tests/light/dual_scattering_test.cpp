@@ -146,6 +146,16 @@ TEST(DualScattering, WithoutHairBetweenItIsTheFibre) {
   }
 }
 
+TEST(DualScattering, NearFieldAveragesToTheFarField) {
+  const DualScattering hair{FibreScattering(hairOf(Vec3(0.06, 0.1, 0.2)))};
+  const Vec3 wi = direction(0.3, 0), wo = direction(-0.2, 2.5);
+  const ForwardScattering half{0.5, Vec3::Constant(0.7), Vec3::Constant(0.05)};
+  Vec3 mean = Vec3::Zero();
+  for (int s = 0; s < 2000; ++s) mean += hair.evaluate(wi, wo, half, (s + 0.5) / 1000 - 1) / 2000;
+  const Vec3 far = hair.evaluate(wi, wo, half);
+  EXPECT_LT((mean - far).norm(), 0.02 * far.norm());  // the tables'
+}
+
 TEST(DualScattering, BackscatterKeepsItsEnergy) {
   const FibreScattering fibre(hairOf(Vec3(0.1, 0.2, 0.5)));
   const DualScattering hair(fibre);

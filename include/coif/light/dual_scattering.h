@@ -11,6 +11,7 @@
 // const queries are thread-safe.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "coif/light/fibre.h"
@@ -21,8 +22,9 @@ enum class DualFormulas { Printed, Corrected };
 
 struct DualScatteringParameters {
   DualFormulas formulas = DualFormulas::Corrected;
-  double forwardDensity = 0.7;   ///< d_f, share of directions around a point that hold hair; [0, 1]
-  double backwardDensity = 0.7;  ///< d_b
+  /// d_f and d_b: the share of directions around a point that hold hair, in [0, 1]. The paper's 0.7 belongs
+  /// to its factor of 2; with the corrected formulas 1 is nearest to the path tracer (docs/light.md).
+  double forwardDensity = 1, backwardDensity = 1;
 };
 
 /// (10) as printed; 1 is what conserves energy (ā_b + Ā_b = 1 without absorption).
@@ -78,11 +80,16 @@ class DualScattering {
 
   /// F of (21): radiance towards `wo` for unit irradiance from the light at `wi`.
   Vec3 evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving) const;
+  /// With light that arrives unscattered as it leaves at offset h of the fibre (fibre.h): near field.
+  Vec3 evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving, double h) const;
   /// Its parts: f_s · cos θ_i of light spread by `variance` (N^G if `scattered`), f_back · cos θ_i.
   Vec3 single(const Vec3& wi, const Vec3& wo, const Vec3& variance, bool scattered) const;
   Vec3 back(const Vec3& wi, const Vec3& wo, const Vec3& variance, bool scattered) const;
 
  private:
+  Vec3 shade(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving,
+             std::optional<double> h) const;
+
   FibreScattering fibre_;
   DualScatteringParameters parameters_;
   DualScatteringTables tables_;
