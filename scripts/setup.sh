@@ -11,7 +11,8 @@ PACKAGES=(
   build-essential cmake ninja-build ccache git ca-certificates dpkg-dev
   python3 python3-dev python3-venv
   libeigen3-dev libopenmesh-dev libosd-dev libtinygltf-dev libtbb-dev libepoxy-dev libegl-dev libgl-dev
-  libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev libopenexr-dev libembree-dev liblz4-dev libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
+  libglfw3-dev libimgui-dev libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev libopenexr-dev libembree-dev
+  liblz4-dev libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
 )
 missing=()
 for package in "${PACKAGES[@]}"; do
@@ -65,6 +66,7 @@ if [ "${1:-}" = --tests ]; then
   python_has pytest || wheels+=(pytest)
   python_has pxr || wheels+=(usd-core)
   python_has flip_evaluator || wheels+=(flip-evaluator)
+  python_has PIL || wheels+=(pillow)
   python_has scikit_build_core || wheels+=(scikit-build-core)
 fi
 if [ ${#wheels[@]} -gt 0 ]; then
@@ -77,6 +79,11 @@ fi
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
   say "Installing Node.js for the glTF validator"
   apt_install nodejs npm || true
+fi
+# The editor's tests drive a real window on a display of their own.
+if ! command -v Xvfb >/dev/null || ! command -v xdotool >/dev/null; then
+  say "Installing Xvfb and xdotool for the editor's tests"
+  apt_install xvfb xdotool || true
 fi
 if ! [ -e build/node_modules/gltf-validator ] && command -v npm >/dev/null; then
   say "Installing gltf-validator"

@@ -1,12 +1,9 @@
 // coif new: from a head model to a scene with a hairstyle.
-#include <cmath>
-
 #include "coif/io/mesh_io.h"
 #include "coif/place/place.h"
 #include "coif/scalp/cage.h"
 #include "coif/scalp/weld.h"
-#include "coif/scene/hairstyle.h"
-#include "coif/scene/scene.h"
+#include "coif/scene/new_scene.h"
 #include "command.h"
 #include "region_option.h"
 
@@ -19,8 +16,6 @@ struct NewArguments {
   std::optional<double> metersPerUnit, weldTolerance;
   std::string up, forward, mirror;
 };
-
-constexpr double kHeadMeters = 0.24;  // a head 24 cm tall, where a file says nothing of its unit
 
 Result<std::optional<Vec3>> axis(const std::string& text) {
   if (text.empty()) return std::optional<Vec3>();
@@ -54,12 +49,6 @@ Result<Cage> cageOf(const NewArguments& arguments, const Surface& head, const Re
   return buildCage(head.mesh(), head, region, options, context);
 }
 
-/// Where the face looks, as an azimuth of the camera: 0 is +z of a y-up model, −y of a z-up one.
-double frontAzimuthDeg(const HeadFrame& frame, UpAxis up) {
-  const double depth = up == UpAxis::Y ? frame.forward.z() : -frame.forward.y();
-  return std::atan2(frame.forward.x(), depth) * 180 / M_PI;
-}
-
 Status makeScene(const NewArguments& arguments, Session& session) {
   const Context context = session.context();
   CapOptions cap;
@@ -82,26 +71,19 @@ Status makeScene(const NewArguments& arguments, Session& session) {
   context.report("modelling the hairstyle", 0.6);
   COIF_ASSIGN(Hairstyle hairstyle, modelHairstyle(arguments.style, cage, head, context));
 
-  Scene scene;
+  const std::size_t pinned = hairstyle.report.pinned;
+  COIF_ASSIGN(Scene scene,
+              sceneOnHead(arguments.scalp, mesh, cage, std::move(hairstyle), arguments.metersPerUnit));
   scene.name = arguments.style;
-  scene.head.path = std::filesystem::absolute(arguments.scalp);
-  COIF_ASSIGN(scene.head.contentHash, fileHash(arguments.scalp));
-  scene.metersPerUnit = arguments.metersPerUnit  ? *arguments.metersPerUnit
-                        : mesh.metersPerUnit > 0 ? mesh.metersPerUnit
-                                                 : kHeadMeters / cage.frame.height;
-  scene.upAxis = mesh.upAxis;
-  scene.look.azimuthDeg = hairstyle.showFromDeg + frontAzimuthDeg(cage.frame, mesh.upAxis);
-  scene.hairMesh = std::move(hairstyle.mesh);
-  scene.placedHash = meshHash(scene.hairMesh);
   COIF_TRY(saveScene(scene, arguments.output));
   session.say("wrote " + arguments.output + ": " + arguments.style + ", " +
               std::to_string(scene.hairMesh.bundles().size()) + " bundles, " +
-              std::to_string(scene.hairMesh.vertices().size()) + " vertices (" +
-              std::to_string(hairstyle.report.pinned) + " pinned)");
+              std::to_string(scene.hairMesh.vertices().size()) + " vertices (" + std::to_string(pinned) +
+              " pinned)");
   session.finish({{"scene", arguments.output},
                   {"bundles", scene.hairMesh.bundles().size()},
                   {"vertices", scene.hairMesh.vertices().size()},
-                  {"pinned", hairstyle.report.pinned},
+                  {"pinned", pinned},
                   {"metersPerUnit", scene.metersPerUnit},
                   {"notes", region.notes}});
   return {};

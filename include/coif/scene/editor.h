@@ -49,6 +49,10 @@ class Editor {
   /// the wrong kind or out of range; nothing suitable selected), and those of the operation. On an error
   /// nothing has changed. Cost: the operation's, and one placement when the mesh changed.
   Status run(std::string_view command, const CommandArguments& arguments = {}, const Context& context = {});
+  /// The mesh as the command would leave it, and nothing done: what a tool shows before it is confirmed.
+  /// Errors and cost as run(); NotFound for undo and redo.
+  Result<HairMesh> attempt(std::string_view command, const CommandArguments& arguments = {},
+                           const Context& context = {}) const;
   /// Why the command cannot run now, in one sentence; empty when it can be tried.
   std::string refusal(std::string_view command) const;
 
@@ -62,6 +66,7 @@ class Editor {
 
   /// True from the first step after construction or save() on.
   bool modified() const { return done_ != savedAt_; }
+  void markModified() { savedAt_ = std::size_t(-1); }  ///< as after a crash: what is on disk is older
   Status save(const std::filesystem::path& path);
   /// Counts undo, redo and steps: what a view compares to know that it is out of date.
   std::uint64_t revision() const { return revision_; }
@@ -75,6 +80,14 @@ class Editor {
     bool meshChanged = false;
     std::shared_ptr<const EditState> before, after;  // shared between neighbouring steps where equal
   };
+  struct Outcome {
+    HairMesh mesh;
+    EditState state;
+    bool meshChanged = false;
+  };
+  Result<Outcome> outcomeOf(std::string_view command, const CommandArguments& arguments,
+                            const Context& context) const;
+  void record(const std::string& label, std::string python, const Outcome& outcome);
   Status undo();
   Status redo();
   void adopt(const EditState& state);

@@ -34,38 +34,57 @@ Editor::~Editor() = default;
 Editor::Editor(Editor&&) noexcept = default;
 Editor& Editor::operator=(Editor&&) noexcept = default;
 
-Status Editor::run(std::string_view name, const CommandArguments& given, const Context& context) {
+Result<Editor::Outcome> Editor::outcomeOf(std::string_view name, const CommandArguments& given,
+                                          const Context& context) const {
   const editor::Command* command = editor::find(name);
-  if (command == nullptr) {
+  if (command == nullptr || !command->run) {
     return makeError(ErrorCode::NotFound, "there is no command '" + std::string(name) + "'");
   }
   COIF_ASSIGN(const editor::Arguments arguments, editor::complete(*command, given));
-  if (!command->run) return name == "undo" ? undo() : redo();
-
   editor::Work work{scene_.hairMesh, state_, head_, context};
   COIF_TRY(command->run(work, arguments));
-  const bool meshChanged = !(work.mesh == scene_.hairMesh);
-  if (meshChanged) {
-    COIF_ASSIGN(const PlaceReport placed, place(work.mesh, {}, context));
+  Outcome outcome{std::move(work.mesh), std::move(work.state), false};
+  outcome.meshChanged = !(outcome.mesh == scene_.hairMesh);
+  if (outcome.meshChanged) {
+    COIF_ASSIGN(const PlaceReport placed, place(outcome.mesh, {}, context));
     (void)placed;
   }
-  dropMissing(work.mesh, work.state);
-  if (!meshChanged && work.state == state_) return {};
+  dropMissing(outcome.mesh, outcome.state);
+  return outcome;
+}
 
+Result<HairMesh> Editor::attempt(std::string_view command, const CommandArguments& arguments,
+                                 const Context& context) const {
+  COIF_ASSIGN(Outcome outcome, outcomeOf(command, arguments, context));
+  return std::move(outcome.mesh);
+}
+
+Status Editor::run(std::string_view name, const CommandArguments& given, const Context& context) {
+  if (name == "undo" || name == "redo") {
+    COIF_ASSIGN(const editor::Arguments none, editor::complete(*editor::find(name), given));
+    (void)none;
+    return name == "undo" ? undo() : redo();
+  }
+  COIF_ASSIGN(Outcome outcome, outcomeOf(name, given, context));
+  if (!outcome.meshChanged && outcome.state == state_) return {};
+  record(findCommand(name)->label, pythonLine(name, given), outcome);
+  scene_.hairMesh = std::move(outcome.mesh);
+  if (outcome.meshChanged) scene_.placedHash = meshHash(scene_.hairMesh);
+  adopt(outcome.state);
+  return {};
+}
+
+void Editor::record(const std::string& label, std::string python, const Outcome& outcome) {
   const std::size_t stepsOfMesh = history_.undoCount();
-  if (meshChanged) history_.record(scene_.hairMesh, work.mesh, command->info.label);
+  if (outcome.meshChanged) history_.record(scene_.hairMesh, outcome.mesh, label);
   steps_.resize(done_);
   const bool sharesState = !steps_.empty() && *steps_.back().after == state_;
-  Step step{command->info.label, pythonLine(name, given), history_.undoCount() > stepsOfMesh,
+  Step step{label, std::move(python), history_.undoCount() > stepsOfMesh,
             sharesState ? steps_.back().after : std::make_shared<const EditState>(state_), nullptr};
-  step.after = work.state == state_ ? step.before : std::make_shared<const EditState>(work.state);
+  step.after = outcome.state == state_ ? step.before : std::make_shared<const EditState>(outcome.state);
   steps_.push_back(std::move(step));
   if (savedAt_ > done_) savedAt_ = std::size_t(-1);  // the saved state was undone and is now out of reach
   ++done_;
-  scene_.hairMesh = std::move(work.mesh);
-  if (meshChanged) scene_.placedHash = meshHash(scene_.hairMesh);
-  adopt(work.state);
-  return {};
 }
 
 void Editor::adopt(const EditState& state) {

@@ -1,0 +1,176 @@
+// Questions: a path, what to do with what a crash left, whether to save; and the guided tour.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "coif/io/safe_file.h"
+#include "coif/scene/hairstyle.h"
+#include "studio.h"
+
+namespace coif::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+void centred(float width) {
+  const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width, 0}, ImGuiCond_Appearing);
+}
+
+/// The folder that a path being typed is in, and its entries: folders first.
+std::vector<fs::path> entriesBeside(const std::string& text) {
+  fs::path folder(text);
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) folder = folder.parent_path();
+  if (folder.empty()) folder = fs::current_path(error);
+  std::vector<fs::path> entries{folder / ".."};
+  for (const auto& entry :
+       fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, error)) {
+    if (entry.path().filename().string().front() != '.') entries.push_back(entry.path());
+  }
+  std::ranges::sort(entries.begin() + 1, entries.end(), {}, [&](const fs::path& p) {
+    return std::pair(!fs::is_directory(p, error), p.filename().string());
+  });
+  return entries;
+}
+
+}  // namespace
+
+void Studio::askPath(PathUse use) {
+  pathUse_ = use;
+  std::error_code error;
+  const fs::path folder = document_ && !document_->path.empty() ? fs::absolute(document_->path).parent_path()
+                                                                : fs::current_path(error);
+  const std::string stem = document_ && !document_->path.empty() ? document_->path.stem().string() : "hair";
+  pathText_ = (use == PathUse::SaveAs       ? folder / (stem + ".coif")
+               : use == PathUse::Export     ? folder / (stem + ".usdc")
+               : use == PathUse::Screenshot ? folder / (stem + ".png")
+                                            : folder / "")
+                  .string();
+  ImGui::OpenPopup("path");
+}
+
+void Studio::usePath(const fs::path& path) {
+  const PathUse use = std::exchange(pathUse_, PathUse::None);
+  if (use == PathUse::Open) return openPath(path, options_.style);
+  if (use == PathUse::SaveAs) return saveTo(path);
+  if (use == PathUse::Export) return exportTo(path);
+  const auto png = encodePng(window_.screenshot());
+  if (!png.ok()) return say(png.error().text(), true);
+  auto file = SafeFile::create(path);
+  if (!file.ok()) return say(file.error().text(), true);
+  file->write(*png);
+  const Status written = file->commit();
+  written.ok() ? say("wrote " + path.string()) : say(written.error().text(), true);
+}
+
+void Studio::drawPathDialog() {
+  if (pathUse_ == PathUse::None) return;
+  const char* titles[] = {"", "Open a head or a .coif document", "Save the document as",
+                          "Export strands (.usdc, .usda, .glb, .hair)", "Write a picture of the window"};
+  const std::string title = std::string(titles[int(pathUse_)]) + "###path";
+  if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
+  centred(560 * window_.scale());
+  if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoCollapse)) return;
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputText("##path", &pathText_);
+  const bool enter = window_.keys().pressed("Enter");
+  ImGui::BeginChild("entries", {0, 240 * window_.scale()}, true);
+  std::error_code error;
+  for (const fs::path& entry : entriesBeside(pathText_)) {
+    const bool folder = fs::is_directory(entry, error);
+    if (ImGui::Selectable((entry.filename().string() + (folder ? "/" : "")).c_str())) {
+      pathText_ = folder ? (fs::weakly_canonical(entry, error) / "").string() : entry.string();
+    }
+  }
+  ImGui::EndChild();
+  if (ImGui::Button("OK", {110 * window_.scale(), 0}) || enter) {
+    ImGui::CloseCurrentPopup();
+    usePath(pathText_);
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {110 * window_.scale(), 0}) || window_.keys().pressed("Escape")) {
+    pathUse_ = PathUse::None;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Studio::drawRecoveryDialog() {
+  if (leftBehind_.empty()) return;
+  constexpr const char* kTitle = "A document was not saved";
+  if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  centred(460 * window_.scale());
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_NoResize)) return;
+  ImGui::TextWrapped("The last run ended without saving. Its newest copy can be opened again.");
+  bool decided = false;
+  if (ImGui::Button("Recover") || window_.keys().pressed("Enter")) {
+    auto document = Document::recover(leftBehind_.front());
+    document.ok() ? adopt(std::move(*document)) : say(document.error().text(), true);
+    decided = true;
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Throw it away")) {
+    std::error_code ignored;
+    for (const fs::path& path : leftBehind_)
+      fs::remove(path, ignored), fs::remove(path.string() + ".json", ignored);
+    decided = true;
+  }
+  ImGui::SameLine();
+  decided |= ImGui::Button("Later");
+  if (decided) leftBehind_.clear(), ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+void Studio::drawCloseDialog() {
+  if (!closeAsked_) return;
+  constexpr const char* kTitle = "Save before closing?";
+  if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  centred(380 * window_.scale());
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_NoResize)) return;
+  ImGui::TextUnformatted("The document has changes that are not saved.");
+  const bool saves = ImGui::Button("Save");
+  ImGui::SameLine();
+  const bool discards = ImGui::Button("Discard");
+  ImGui::SameLine();
+  const bool stays = ImGui::Button("Cancel");
+  if (saves || discards || stays) closeAsked_ = false, ImGui::CloseCurrentPopup();
+  if (saves && document_->path.empty()) {
+    askPath(PathUse::SaveAs);
+  } else if (saves) {
+    saveTo(document_->path);
+    quit_ = !document_->editor.modified();
+  }
+  if (discards) document_->forgetAutosave(), quit_ = true;
+  ImGui::EndPopup();
+}
+
+void Studio::drawTour() {
+  if (!tourOpen_ || !leftBehind_.empty()) return;
+  centred(440 * window_.scale());
+  if (ImGui::Begin("Two minutes with Coif", &tourOpen_, ImGuiWindowFlags_NoCollapse)) {
+    ImGui::TextWrapped(
+        "1. Open a head (Ctrl+O) or drop one here: a cage is laid on its scalp and a hairstyle modelled.\n"
+        "2. Middle mouse turns, Shift + middle shifts, the wheel zooms; F frames the selection.\n"
+        "3. 1, 2, 3 choose vertices, edges or faces. Click, drag a box, or Ctrl + drag a lasso.\n"
+        "4. G moves, R rotates, S scales, E extrudes the selected tips; X, Y, Z hold an axis; type a "
+        "number.\n"
+        "5. Y parts the selected edges there and above; M joins vertices again.\n"
+        "6. Inner vertices are placed by themselves. One that you move is pinned.\n"
+        "7. F3 finds any command; Ctrl+Z takes back as far as you like.\n"
+        "8. Ctrl+Shift+E exports strands as USD, glTF or .hair.");
+    for (const std::string_view style : hairstyleNames()) {
+      bool chosen = options_.style == style;
+      if (ImGui::RadioButton(std::string(style).c_str(), chosen)) options_.style = style;
+      ImGui::SameLine();
+    }
+    ImGui::NewLine();
+    ImGui::TextDisabled("The hairstyle that a head is opened with.");
+  }
+  ImGui::End();
+}
+
+}  // namespace coif::studio

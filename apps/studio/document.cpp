@@ -1,0 +1,152 @@
+#include "document.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "coif/io/mesh_io.h"
+#include "coif/io/safe_file.h"
+#include "coif/scene/new_scene.h"
+
+namespace coif::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path autosaveFolder() {
+  return stateFolder() / "autosave";
+}
+
+Result<Scene> sceneOf(const fs::path& path, const std::string& style, std::shared_ptr<const Surface>& head,
+                      const Context& context) {
+  if (path.extension() == ".coif") return loadScene(path);
+  COIF_ASSIGN(PolygonMesh mesh, loadPolygonMesh(path));
+  head = std::make_shared<Surface>(mesh);
+  COIF_ASSIGN(const Region region, automaticCap(*head));
+  CageOptions options;
+  if (!style.empty()) options.count = int(suggestedCageCount(style));
+  COIF_ASSIGN(const Cage cage, buildCage(head->mesh(), *head, region, options, context));
+  COIF_ASSIGN(Hairstyle hairstyle,
+              style.empty() ? bareRoots(cage) : modelHairstyle(style, cage, *head, context));
+  COIF_ASSIGN(Scene scene, sceneOnHead(path, mesh, cage, std::move(hairstyle)));
+  scene.name = style.empty() ? path.stem().string() : style;
+  return scene;
+}
+
+}  // namespace
+
+fs::path stateFolder() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != 0)
+    return fs::path(state) / "coif";
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : "/tmp") / ".local/state/coif";
+}
+
+Document::Document(Scene scene) : editor(std::move(scene)) {
+  key_ = std::to_string(::getpid()) + "-" +
+         std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+Result<std::unique_ptr<Document>> Document::open(const fs::path& path, const std::string& style,
+                                                 const Context& context) {
+  std::shared_ptr<const Surface> head;
+  auto made = sceneOf(path, style, head, context);
+  if (!made.ok()) return inFile(made.error(), path.string());
+  std::unique_ptr<Document> document(new Document(std::move(*made)));
+  if (path.extension() == ".coif") document->path = path;
+  document->head = head;
+  document->readHead();
+  return document;
+}
+
+void Document::readHead() {
+  if (!head && !editor.scene().head.path.empty()) {
+    auto mesh = loadPolygonMesh(editor.scene().headPath());
+    if (mesh.ok()) {
+      head = std::make_shared<Surface>(std::move(*mesh));
+    } else {
+      headProblem = "the head could not be read: " + mesh.error().text();
+    }
+  }
+  editor.setHead(head.get());
+}
+
+std::string Document::title() const {
+  const std::string name = path.empty() ? editor.scene().name + " (not saved yet)" : path.filename().string();
+  return (editor.modified() ? "*" : "") + name;
+}
+
+Status Document::save(const fs::path& to) {
+  COIF_TRY(editor.save(to));
+  path = to;
+  forgetAutosave();
+  return {};
+}
+
+fs::path Document::autosavePath() const {
+  return autosaveFolder() / (key_ + ".coif");
+}
+
+Status Document::autosave() {
+  if (!needsAutosave()) return {};
+  std::error_code ignored;
+  fs::create_directories(autosaveFolder(), ignored);
+  // A copy: saving a document moves its relative head path along, and marks it as saved.
+  Scene copy = editor.scene();
+  copy.head.path = copy.head.path.empty() ? copy.head.path : editor.scene().headPath();
+  COIF_TRY(saveScene(copy, autosavePath()));
+  const std::string origin = path.empty() ? std::string() : fs::absolute(path).string();
+  COIF_ASSIGN(auto file, SafeFile::create(autosavePath().string() + ".json"));
+  const std::string text = nlohmann::json{{"original", origin}}.dump();
+  file.write(text);
+  COIF_TRY(file.commit());
+  autosavedRevision_ = editor.revision();
+  return {};
+}
+
+void Document::forgetAutosave() {
+  std::error_code ignored;
+  fs::remove(autosavePath(), ignored);
+  fs::remove(autosavePath().string() + ".json", ignored);
+  autosavedRevision_ = editor.revision();
+}
+
+std::vector<fs::path> Document::leftBehind() {
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(autosaveFolder(), error)) {
+    if (entry.path().extension() != ".coif") continue;
+    // Named by the process that wrote it: one that still runs is not a crash.
+    const long process = std::strtol(entry.path().filename().c_str(), nullptr, 10);
+    if (fs::exists("/proc/" + std::to_string(process))) continue;
+    found.push_back({entry.last_write_time(error), entry.path()});
+  }
+  std::ranges::sort(found, std::greater());
+  std::vector<fs::path> paths;
+  for (const auto& [time, path] : found) paths.push_back(path);
+  return paths;
+}
+
+Result<std::unique_ptr<Document>> Document::recover(const fs::path& autosave) {
+  COIF_ASSIGN(std::unique_ptr<Document> document, open(autosave, "", {}));
+  document->path.clear();
+  if (const auto bytes = readFile(autosave.string() + ".json"); bytes.ok()) {
+    const auto json =
+        nlohmann::json::parse(reinterpret_cast<const char*>(bytes->data()),
+                              reinterpret_cast<const char*>(bytes->data()) + bytes->size(), nullptr, false);
+    if (json.is_object() && json.contains("original") && json["original"].is_string()) {
+      document->path = json["original"].get<std::string>();
+    }
+  }
+  document->editor.markModified();
+  // The copy stays until there is a newer one, now under this process's name.
+  std::error_code ignored;
+  fs::rename(autosave, document->autosavePath(), ignored);
+  fs::rename(autosave.string() + ".json", document->autosavePath().string() + ".json", ignored);
+  return document;
+}
+
+}  // namespace coif::studio

@@ -1,0 +1,49 @@
+// The open document: its editor, its head, and what protects it from a crash.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <string>
+
+#include "coif/scene/editor.h"
+
+namespace coif::studio {
+
+/// Where settings, recent files and autosaves live: $XDG_STATE_HOME/coif, else ~/.local/state/coif.
+std::filesystem::path stateFolder();
+
+class Document {
+ public:
+  /// A .coif document, or a head: then its scalp is found, a cage laid, and `style` modelled on it ("" for
+  /// bare roots). Errors: those of loading and modelling.
+  static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path, const std::string& style,
+                                                const Context& context);
+
+  Editor editor;
+  std::shared_ptr<const Surface> head;  ///< null when it could not be read
+  std::string headProblem;              ///< why not
+  std::filesystem::path path;           ///< of the .coif file; empty until saved
+
+  std::string title() const;
+  Status save(const std::filesystem::path& to);
+  /// Writes a copy beside the settings when something changed since the last one.
+  Status autosave();
+  bool needsAutosave() const { return editor.modified() && editor.revision() != autosavedRevision_; }
+  void forgetAutosave();
+
+  /// Autosaves that a crash left behind, newest first.
+  static std::vector<std::filesystem::path> leftBehind();
+  /// Opens an autosave as what it was a copy of; it stays modified until saved.
+  static Result<std::unique_ptr<Document>> recover(const std::filesystem::path& autosave);
+
+ private:
+  explicit Document(Scene scene);
+  void readHead();
+  std::filesystem::path autosavePath() const;
+
+  std::string key_;  // names this document's autosave
+  std::uint64_t autosavedRevision_ = 0;
+};
+
+}  // namespace coif::studio

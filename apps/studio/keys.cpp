@@ -1,0 +1,48 @@
+#include "keys.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <map>
+
+namespace coif::studio {
+namespace {
+
+int codeOf(const std::string& name) {
+  static const std::map<std::string, int> named = {
+      {"NumpadAdd", GLFW_KEY_KP_ADD},   {"NumpadSubtract", GLFW_KEY_KP_SUBTRACT},
+      {"Home", GLFW_KEY_HOME},          {"Tab", GLFW_KEY_TAB},
+      {"Escape", GLFW_KEY_ESCAPE},      {"Enter", GLFW_KEY_ENTER},
+      {"Space", GLFW_KEY_SPACE},        {"Delete", GLFW_KEY_DELETE},
+      {"Backspace", GLFW_KEY_BACKSPACE}};
+  if (const auto found = named.find(name); found != named.end()) return found->second;
+  if (name.size() == 1) return name.front();  // GLFW's codes of letters and digits are their ASCII codes
+  if (name.size() > 1 && name.front() == 'F') return GLFW_KEY_F1 + std::stoi(name.substr(1)) - 1;
+  return GLFW_KEY_UNKNOWN;
+}
+
+}  // namespace
+
+bool Keys::pressed(const std::string& key) const {
+  if (key.empty() || downs_.empty()) return false;
+  int modifiers = 0;
+  std::size_t from = 0;
+  for (std::size_t plus; (plus = key.find('+', from)) != std::string::npos; from = plus + 1) {
+    const std::string modifier = key.substr(from, plus - from);
+    modifiers |= modifier == "Ctrl" ? GLFW_MOD_CONTROL : modifier == "Shift" ? GLFW_MOD_SHIFT : GLFW_MOD_ALT;
+  }
+  const int code = codeOf(key.substr(from));
+  return std::ranges::any_of(downs_,
+                             [&](const Down& d) { return d.key == code && d.modifiers == modifiers; });
+}
+
+std::string typedNumber() {
+  std::string out;
+  for (const ImWchar c : ImGui::GetIO().InputQueueCharacters) {
+    if ((c >= '0' && c <= '9') || c == '.' || c == '-') out += char(c);
+  }
+  return out;
+}
+
+}  // namespace coif::studio

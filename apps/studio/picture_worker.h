@@ -1,0 +1,72 @@
+// Pictures of the document in the background: the window never waits for strands or for light.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "coif/preview/session.h"
+#include "coif/scene/evaluate.h"
+
+namespace coif::studio {
+
+struct PictureRequest {
+  std::shared_ptr<const Scene> scene;  ///< with its internal vertices placed
+  std::uint64_t revision = 0;          ///< of the scene: the same one need not be looked at again
+  Camera camera;
+  PreviewOptions options;
+  bool strands = true, head = true;
+  std::shared_ptr<const Surface> surface;  ///< the head; null: none
+};
+
+struct PictureAnswer {
+  Image image;
+  Camera camera;
+  std::string problem;  ///< a sentence; empty when the picture was made
+  std::vector<StageReport> stages;
+  double seconds = 0;
+  std::size_t strandsDrawn = 0;
+};
+
+class PictureWorker {
+ public:
+  /// `ready` is called from the worker's thread after each answer.
+  explicit PictureWorker(std::function<void()> ready);
+  ~PictureWorker();
+
+  /// Replaces a request that was not begun; one that runs is cancelled.
+  void ask(PictureRequest request);
+  /// The newest answer since the last call.
+  std::optional<PictureAnswer> take();
+  bool busy() const { return busy_; }
+
+ private:
+  void loop();
+  PictureAnswer answer(const PictureRequest& request);
+  Status show(const PictureRequest& request, PictureAnswer& out);
+  Status updateHair(const PictureRequest& request, const Context& context);
+
+  std::function<void()> ready_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<PictureRequest> wanted_;
+  std::optional<PictureAnswer> done_;
+  std::atomic<bool> stop_{false}, cancel_{false}, busy_{false};
+
+  // The worker's own; only its thread touches them.
+  std::optional<Preview> preview_;
+  std::unique_ptr<PreviewSession> session_;
+  Evaluation evaluation_;
+  std::shared_ptr<const Surface> shownHead_;
+  bool headShown_ = false, hairShown_ = false;
+  std::uint64_t shownRevision_ = 0, shownTopology_ = 0;
+
+  std::thread thread_;
+};
+
+}  // namespace coif::studio

@@ -1,0 +1,24 @@
+// What the studio remembers between runs: recent files, theme, habits, keys.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coif/base/result.h"
+
+namespace coif::studio {
+
+struct Settings {
+  std::vector<std::string> recent;          ///< newest first, at most ten
+  std::map<std::string, std::string> keys;  ///< command → key, where it is not the default
+  bool lightTheme = false, mayaMouse = false;
+
+  static Settings load();  ///< defaults where there is none or it cannot be understood
+  Status save() const;
+  void addRecent(const std::filesystem::path& path);
+  std::string keyOf(const std::string& command) const;  ///< own, else the command's default
+};
+
+}  // namespace coif::studio

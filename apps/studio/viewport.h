@@ -1,0 +1,67 @@
+// The view: camera by mouse, the picture behind, the hair mesh over it, what is under the mouse.
+#pragma once
+
+#include <imgui.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "coif/scene/editor.h"
+#include "coif/scene/navigation.h"
+#include "coif/scene/picking.h"
+
+namespace coif::studio {
+
+enum class MeshStyle { Hidden, Wire, XRay };
+enum class MouseHabit { Blender, Maya };
+
+struct ViewSettings {
+  MeshStyle mesh = MeshStyle::Wire;
+  bool showInternal = false, showHead = true, showStrands = true, grid = true;
+  SelectKind kind = SelectKind::Vertex;
+  MouseHabit habit = MouseHabit::Blender;
+};
+
+class Viewport {
+ public:
+  ViewSettings settings;
+  Camera camera;
+  UpAxis upAxis = UpAxis::Y;
+
+  /// Places the view in the window, in pixels; call first in a frame.
+  void place(const ImVec2& origin, const ImVec2& size);
+  /// Projects `mesh` anew where it, the camera or the settings changed. `revision` names the mesh's state.
+  void update(const HairMesh& mesh, std::uint64_t revision, const EditState& state, const Surface* head);
+  /// Orbit, pan and zoom by the mouse; true while the camera moves.
+  bool navigate();
+  /// Box of everything, or of the selection when there is one.
+  void frame(const HairMesh& mesh, const Selection& selection);
+
+  void drawPicture(std::uint32_t texture) const;
+  void drawMesh(const HairMesh& mesh, const EditState& state) const;
+
+  bool hovered() const { return hovered_; }
+  Vec2 mouse() const;  ///< in the view's own pixels
+  const ScreenMesh* screen() const { return screen_.get(); }
+  int width() const { return int(size_.x); }
+  int height() const { return int(size_.y); }
+  double aspect() const { return size_.y > 0 ? double(size_.x) / double(size_.y) : 1; }
+  ImVec2 toWindow(const Vec2& px) const { return {origin_.x + float(px.x()), origin_.y + float(px.y())}; }
+  /// Scene units a pixel, at the depth of a point.
+  double unitsPerPixel(const Vec3& at) const;
+  Vec3 right() const, up() const, forward() const;
+
+ private:
+  void drawEdges(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
+  void drawVertices(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
+  void drawFaces(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
+  void drawHover(ImDrawList& list, const HairMesh& mesh) const;
+
+  ImVec2 origin_{0, 0}, size_{1, 1};
+  bool hovered_ = false;
+  std::unique_ptr<ScreenMesh> screen_;
+  std::uint64_t shownKey_ = 0;
+};
+
+}  // namespace coif::studio
