@@ -182,7 +182,9 @@ std::size_t prefixLength(const HairModel& model, double meanSegments, const Deta
   const double wanted =
       std::max(count * meanWidthPx(model, pixelAt) / options.ribbonPx, double(options.leastStrands));
   const double share = std::min(wanted, bound) / std::max(count, 1.0);
-  return share >= 1 ? model.strands : std::max<std::size_t>(std::size_t(count * stepped(share)), 1);
+  if (share >= 1) return model.strands;
+  const double least = std::min(double(options.leastStrands), bound);
+  return std::size_t(std::clamp(std::max(count * stepped(share), least), 1.0, count));
 }
 
 /// Adds `count` strands of a lock to the plan, cut where a batch is full.

@@ -76,6 +76,8 @@ std::span<const ProgramSource> allPrograms() {
       {"strand_columns.comp", "", {}},
       {"strand_points.comp", "", {}},
       {"strand_points.comp", "", {"IMPORTED"}},
+      {"strand_raster.comp", "", {}},
+      {"strand_raster.comp", "", {"NEAREST"}},
   };
   return programs;
 }

@@ -35,6 +35,8 @@ enum class ProgramId {
   StrandColumns,
   StrandPoints,
   StrandPointsImported,
+  StrandRaster,
+  StrandRasterNearest,
 };
 std::span<const ProgramSource> allPrograms();
 

@@ -12,13 +12,6 @@ constexpr std::size_t kAlign =
     8;  // points: a batch starts at a multiple of 256 bytes, enough for every driver
 constexpr GLuint kGroup = 64, kMostGroups = 32768;
 
-Buffer emptyBuffer(std::size_t bytes, GLbitfield flags = 0) {
-  GLuint name = 0;
-  glCreateBuffers(1, &name);
-  glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(bytes, 16)), nullptr, flags);
-  return Buffer(name);
-}
-
 void bind(GLuint binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
 }
@@ -54,6 +47,13 @@ Vec3f tangentFrom(std::uint32_t bits) {
 }
 
 }  // namespace
+
+Buffer emptyBuffer(std::size_t bytes, GLbitfield flags) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(bytes, 16)), nullptr, flags);
+  return Buffer(name);
+}
 
 std::size_t mostBatchPoints() {
   return std::min<std::size_t>(blockSize() / kPackedPoint, std::size_t{1} << 30) / kAlign * kAlign;
@@ -163,6 +163,16 @@ void StrandBuffers::draw() const {
                    GL_UNSIGNED_INT, reinterpret_cast<const void*>(indexOffsets_[b] * 4));
   }
   glDisable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
+}
+
+void StrandBuffers::dispatchPoints() const {
+  for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
+    const Batch& batch = plan_.batches[b];
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
+                      GLsizeiptr(batch.points * kPackedPoint));
+    glUniform1ui(0, batch.points);
+    dispatch((batch.points + kGroup - 1) / kGroup);
+  }
 }
 
 std::vector<StrandBuffers::Point> StrandBuffers::readBack() const {

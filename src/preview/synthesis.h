@@ -37,6 +37,8 @@ class StrandBuffers {
   /// All strips, with the bound program. Vertex v is side v & 1 of point v >> 1 of a ribbon, or point v of a
   /// line.
   void draw() const;
+  /// One invocation of the bound program a point, batch after batch: points at binding 0, their number at location 0.
+  void dispatchPoints() const;
   Topology topology() const { return topology_; }
   const DetailPlan& plan() const { return plan_; }
   std::size_t bytes() const { return bytes_; }  ///< of points and indices
@@ -63,6 +65,9 @@ class StrandBuffers {
   Buffer shares_, parameters_, columns_, points_, indices_;
   VertexArray array_;
 };
+
+/// A buffer of that many bytes, undefined.
+Buffer emptyBuffer(std::size_t bytes, GLbitfield flags = 0);
 
 /// Most points a batch may have with this driver.
 std::size_t mostBatchPoints();

@@ -7,11 +7,19 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "coif/preview/preview.h"
 #include "coif/strands/catmull_rom.h"
 
 namespace coif {
+
+/// Coverage of the strands alone, drawn by a compute shader.
+struct ComputeCoverage {
+  int width = 0, height = 0;
+  std::vector<float> coverage;  ///< height × width, rows from the top; 0 … 1
+  double seconds = 0;           ///< of the drawing alone, the GPU waited for; the best of three
+};
 
 /// Holds what it shows; nothing it was given needs to live on. Shares the Preview's OpenGL context; use both
 /// from one thread at a time.
@@ -47,6 +55,12 @@ class PreviewSession {
 
   /// The picture, and what was uploaded and done for it. Errors: those of Preview::render.
   Result<Picture> render(const PreviewOptions& options = {}, const Context& context = {});
+
+  /// The last picture's strands drawn again without the graphics pipeline: one invocation a segment, 32-bit
+  /// atomics (shaders/strand_raster.comp); `nearest`: with the nearest depth too. No head, no shading: what
+  /// drawing hairs costs on a device whose pipeline is slower than its compute. Errors: NotFound before the
+  /// first picture with hair.
+  Result<ComputeCoverage> coverageByCompute(int width, int height, bool nearest = false);
 
   /// The points of the last picture, as the GPU holds them; strands in the order of their bundles. For tests
   /// and exports. Errors: NotFound before the first picture with hair.
