@@ -1,6 +1,7 @@
 #include "bench/bench.h"
 
 #include <cmath>
+#include <limits>
 
 namespace coif {
 
@@ -17,10 +18,19 @@ constexpr Entry kBenches[] = {
     {"place", benchPlace},
     {"coordinates", benchCoordinates},
     {"strands", benchStrands},
+    {"visibility", benchVisibility},
     {"scattering", benchScattering},
 };
 
 }  // namespace
+
+double BenchPlot::abscissa(const BenchSample& sample) const {
+  if (against == "seconds") return sample.seconds;
+  for (const auto& [key, value] : sample.measures) {
+    if (key == against) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 void BenchPlot::rateAgainst(const std::string& method,
                             const std::vector<std::pair<std::string, std::string>>& parameters) {

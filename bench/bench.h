@@ -31,6 +31,8 @@ struct BenchSample {
   double error = 0;    ///< against the truth, in the plot's unit
   double seconds = 0;  ///< the fastest of the repeats
   double ratio = 0;    ///< seconds / those of the plot's baseline; 0: no baseline in this plot
+  std::vector<std::pair<std::string, double>> measures =
+      {};  ///< what else was measured: columns of their own
 };
 
 /// One problem: a curve a method, samples joined in their order.
@@ -40,6 +42,11 @@ struct BenchPlot {
   std::string errorUnit;
   std::string truth;  ///< how the truth was computed, and its own error
   std::vector<BenchSample> samples;
+  std::string against = "seconds";  ///< what the error is drawn over: seconds, or the name of a measure
+  bool curves = false;              ///< functions: linear axes, errorUnit is the whole label, no markers
+
+  /// Of `against`; NaN where the sample does not say.
+  double abscissa(const BenchSample& sample) const;
 
   /// Sets every ratio against the first sample that equals this one's method and has these parameters.
   void rateAgainst(const std::string& method,
@@ -81,7 +88,7 @@ Result<std::vector<BenchReport>> runBenches(std::string_view name, const BenchOp
 /// The figures, samples, machine and build as one JSON object.
 std::string benchJson(const std::vector<BenchReport>& reports);
 std::string benchCsv(const BenchPlot& plot);
-/// A log–log plot, error over seconds, as a stand-alone SVG file.
+/// A log–log plot, error over seconds or over a measure, or curves on linear axes, as a stand-alone SVG file.
 std::string benchSvg(const BenchPlot& plot);
 /// Every plot inline, every figure in a table, machine, compiler, build and seed stated.
 std::string benchHtml(const std::vector<BenchReport>& reports);
@@ -115,6 +122,7 @@ T require(Result<T> result) {
 BenchReport benchPlace(const BenchOptions& options);        ///< bench_place.cpp
 BenchReport benchCoordinates(const BenchOptions& options);  ///< bench_coordinates.cpp
 BenchReport benchStrands(const BenchOptions& options);      ///< bench_strands.cpp
+BenchReport benchVisibility(const BenchOptions& options);   ///< bench_visibility.cpp
 BenchReport benchScattering(const BenchOptions& options);   ///< bench_scattering.cpp
 
 }  // namespace coif

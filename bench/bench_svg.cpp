@@ -21,9 +21,12 @@ constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
 constexpr double kErrorFloor = 1e-17;
 
 struct Axis {
-  double low = 0, high = 1;  ///< decades
+  double low = 0, high = 1;  ///< decades; values themselves where linear
   double from = 0, to = 1;   ///< pixels
-  double at(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
+  bool linear = false;
+  double at(double value) const {
+    return from + ((linear ? value : std::log10(value)) - low) / (high - low) * (to - from);
+  }
 };
 
 std::string number(double x) {
@@ -71,42 +74,75 @@ std::vector<std::string> methodsOf(const BenchPlot& plot) {
   return methods;
 }
 
-double drawn(double error) {
-  return std::max(error, kErrorFloor);
+double drawn(const BenchPlot& plot, double error) {
+  return plot.curves ? error : std::max(error, kErrorFloor);
+}
+
+bool drawable(const BenchPlot& plot, const BenchSample& sample) {
+  const double x = plot.abscissa(sample);
+  return std::isfinite(x) && (plot.curves || x > 0) && std::isfinite(sample.error);
 }
 
 void fit(const BenchPlot& plot, Axis& x, Axis& y) {
-  double fast = HUGE_VAL, slow = 0, good = HUGE_VAL, bad = 0;
+  double left = HUGE_VAL, right = -HUGE_VAL, good = HUGE_VAL, bad = -HUGE_VAL;
   for (const BenchSample& s : plot.samples) {
-    if (!(s.seconds > 0) || !std::isfinite(s.seconds) || !std::isfinite(s.error)) continue;
-    fast = std::min(fast, s.seconds);
-    slow = std::max(slow, s.seconds);
-    good = std::min(good, drawn(s.error));
-    bad = std::max(bad, drawn(s.error));
+    if (!drawable(plot, s)) continue;
+    left = std::min(left, plot.abscissa(s));
+    right = std::max(right, plot.abscissa(s));
+    good = std::min(good, drawn(plot, s.error));
+    bad = std::max(bad, drawn(plot, s.error));
   }
-  if (!(fast <= slow)) fast = slow = 1, good = bad = 1;
-  x = {std::floor(std::log10(fast * 0.8)), std::ceil(std::log10(slow * 1.2)), kLeft, kRight};
+  if (!(left <= right)) left = right = 1, good = bad = 1;
+  if (plot.curves) {
+    x = {left, std::max(right, left + 1e-9), kLeft, kRight, true};
+    y = {std::min(0.0, good), std::max(bad, good + 1e-9), kBottom, kTop, true};
+    return;
+  }
+  x = {std::floor(std::log10(left * 0.8)), std::ceil(std::log10(right * 1.2)), kLeft, kRight};
   y = {std::floor(std::log10(good * 0.6)), std::ceil(std::log10(bad * 1.6)), kBottom, kTop};
 }
 
-std::string grid(const Axis& x, const Axis& y, const std::string& errorUnit) {
-  std::string out = "<g font-size=\"11\" fill=\"#555\">\n";
-  for (int e = int(x.low); e <= int(x.high); ++e) {
-    const double at = x.at(std::pow(10.0, e));
-    out +=
-        line(at, kTop, at, kBottom, "#e3e3e3") + text(at, kBottom + 18, "text-anchor=\"middle\"", decade(e));
+struct Tick {
+  double at = 0;  ///< pixels
+  std::string label;
+};
+
+std::vector<Tick> ticks(const Axis& axis) {
+  std::vector<Tick> out;
+  if (axis.linear) {
+    // 1, 2 or 5 times a power of ten: four to ten of them.
+    const double range = axis.high - axis.low, ten = std::pow(10, std::floor(std::log10(range / 4)));
+    const double step = ten * (range / ten >= 20 ? 5 : range / ten >= 8 ? 2 : 1);
+    for (int i = int(std::ceil(axis.low / step)); i * step <= axis.high + 1e-9 * range; ++i) {
+      out.push_back({axis.at(i * step), shortNumber(i * step)});
+    }
+    return out;
   }
-  const int step = y.high - y.low > 10 ? 2 : 1;
-  for (int e = int(y.low); e <= int(y.high); e += step) {
-    const double at = y.at(std::pow(10.0, e));
-    out += line(kLeft, at, kRight, at, "#e3e3e3") + text(kLeft - 8, at + 4, "text-anchor=\"end\"", decade(e));
+  const int step = axis.high - axis.low > 10 ? 2 : 1;
+  for (int e = int(axis.low); e <= int(axis.high); e += step) {
+    out.push_back({axis.at(std::pow(10.0, e)), decade(e)});
+  }
+  return out;
+}
+
+std::string grid(const BenchPlot& plot, const Axis& x, const Axis& y) {
+  std::string out = "<g font-size=\"11\" fill=\"#555\">\n";
+  for (const Tick& t : ticks(x)) {
+    out += line(t.at, kTop, t.at, kBottom, "#e3e3e3") +
+           text(t.at, kBottom + 18, "text-anchor=\"middle\"", t.label);
+  }
+  for (const Tick& t : ticks(y)) {
+    out += line(kLeft, t.at, kRight, t.at, "#e3e3e3") +
+           text(kLeft - 8, t.at + 4, "text-anchor=\"end\"", t.label);
   }
   out += "</g>\n" + line(kLeft, kBottom, kRight, kBottom, "#888") + line(kLeft, kTop, kLeft, kBottom, "#888");
   out += text((kLeft + kRight) / 2, kBottom + 42, "text-anchor=\"middle\" font-size=\"12\" fill=\"#333\"",
-              "seconds");
+              escapeXml(plot.against));
+  const std::string label =
+      plot.curves ? plot.errorUnit : "error" + (plot.errorUnit.empty() ? "" : " (" + plot.errorUnit + ")");
   out += "<text transform=\"translate(20 " + number((kTop + kBottom) / 2) +
-         ") rotate(-90)\" text-anchor=\"middle\" font-size=\"12\" fill=\"#333\">error" +
-         (errorUnit.empty() ? "" : " (" + escapeXml(errorUnit) + ")") + "</text>\n";
+         ") rotate(-90)\" text-anchor=\"middle\" font-size=\"12\" fill=\"#333\">" + escapeXml(label) +
+         "</text>\n";
   return out;
 }
 
@@ -119,18 +155,18 @@ std::string benchSvg(const BenchPlot& plot) {
                     number(kHeight) + "\" font-family=\"system-ui, Helvetica, Arial, sans-serif\">\n";
   out += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   out += text(kLeft, 28, "font-size=\"15\" font-weight=\"600\" fill=\"#222\"", escapeXml(plot.title));
-  out += grid(x, y, plot.errorUnit);
+  out += grid(plot, x, y);
   const std::vector<std::string> methods = methodsOf(plot);
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const std::string colour = kColours[m % std::size(kColours)];
     std::string path, markers;
     for (const BenchSample& s : plot.samples) {
-      if (s.method != methods[m] || !(s.seconds > 0) || !std::isfinite(s.seconds) || !std::isfinite(s.error))
-        continue;
-      const double px = x.at(s.seconds), py = y.at(drawn(s.error));
+      if (s.method != methods[m] || !drawable(plot, s)) continue;
+      const double px = x.at(plot.abscissa(s)), py = y.at(drawn(plot, s.error));
       std::string tip = s.method;
       for (const auto& [key, value] : s.parameters) tip += ", " + key + " " + value;
       path += (path.empty() ? "M" : "L") + number(px) + " " + number(py);
+      if (plot.curves) continue;
       markers +=
           marker(m, px, py, colour,
                  escapeXml(tip + ": error " + shortNumber(s.error) + ", " + shortNumber(s.seconds) + " s"));

@@ -63,6 +63,17 @@ std::vector<std::string> parameterNames(const BenchPlot& plot) {
   return names;
 }
 
+// Names of the measures, in the order of their first use.
+std::vector<std::string> measureNames(const BenchPlot& plot) {
+  std::vector<std::string> names;
+  for (const BenchSample& s : plot.samples) {
+    for (const auto& [key, value] : s.measures) {
+      if (std::find(names.begin(), names.end(), key) == names.end()) names.push_back(key);
+    }
+  }
+  return names;
+}
+
 std::string barText(const BenchFigure& f) {
   if (f.kind == Bar::None) return "";
   return (f.kind == Bar::AtMost ? "\xe2\x89\xa4 " : "\xe2\x89\xa5 ") + shortNumber(f.bar);
@@ -106,8 +117,10 @@ Status writeText(const std::filesystem::path& path, const std::string& text) {
 
 std::string benchCsv(const BenchPlot& plot) {
   const std::vector<std::string> names = parameterNames(plot);
+  const std::vector<std::string> measured = measureNames(plot);
   std::string out = "method";
   for (const std::string& name : names) out += "," + quoted(name);
+  for (const std::string& name : measured) out += "," + quoted(name);
   out += ",error,seconds,ratio\n";
   for (const BenchSample& s : plot.samples) {
     out += quoted(s.method);
@@ -115,6 +128,11 @@ std::string benchCsv(const BenchPlot& plot) {
       const auto at = std::find_if(s.parameters.begin(), s.parameters.end(),
                                    [&](const auto& p) { return p.first == name; });
       out += "," + (at == s.parameters.end() ? "" : quoted(at->second));
+    }
+    for (const std::string& name : measured) {
+      const auto at =
+          std::find_if(s.measures.begin(), s.measures.end(), [&](const auto& m) { return m.first == name; });
+      out += "," + (at == s.measures.end() ? "" : exactNumber(at->second));
     }
     out += "," + exactNumber(s.error) + "," + exactNumber(s.seconds) + "," + exactNumber(s.ratio) + "\n";
   }
@@ -148,6 +166,7 @@ std::string benchJson(const std::vector<BenchReport>& reports) {
       for (const BenchSample& s : p.samples) {
         nlohmann::ordered_json sample{{"method", s.method}};
         for (const auto& [key, value] : s.parameters) sample["parameters"][key] = value;
+        for (const auto& [key, value] : s.measures) sample["measures"][key] = value;
         sample["error"] = s.error;
         sample["seconds"] = s.seconds;
         sample["ratio"] = s.ratio;

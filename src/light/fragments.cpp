@@ -32,6 +32,21 @@ Status check(const StrandSet& strands, const LightView& view, const FragmentOpti
 
 }  // namespace
 
+int suggestedMapSize(const StrandSet& strands, const Box& box, int most) {
+  constexpr double kWidthsATexel = 10;
+  constexpr int kLeast = 16;
+  double width = kHairMeters / strands.metersPerUnit;
+  std::vector<float> widths = strands.widths;
+  std::erase_if(widths, [](float w) { return !(w > 0) || !std::isfinite(w); });
+  if (!widths.empty()) {
+    const auto middle = widths.begin() + std::ptrdiff_t(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    width = double(*middle);
+  }
+  const double size = box.diagonal() / (kWidthsATexel * width);
+  return std::max(kLeast, size < most ? int(size) : most);
+}
+
 bool MapSegment::set(const LightView& view, const Vec3& worldA, const Vec3& worldB) {
   from = 0, to = 1;
   perspective = view.perspective;

@@ -1,6 +1,7 @@
 // Opacity shadow maps and deep opacity maps: layers from a common depth, or from each texel's first hair.
 #include <algorithm>
 
+#include "light/layer_samples.h"
 #include "light/map_passes.h"
 
 namespace coif {
@@ -118,7 +119,29 @@ MapResult withLayers(const FragmentStream& stream, const VisibilityOptions& opti
 }
 
 constexpr int kChoices[] = {3, 7, 11, 15, 23, 31, 47, 63, 95, 127, 191, 255};
-constexpr double kLeastGain = 0.97;
+// A layer takes away at least what one fragment does: there comes a point where more layers are in vain.
+constexpr double kInVain = 1.03;
+
+struct Candidate {
+  int layers;
+  double size, bound;
+};
+
+/// Fewest layers first; nothing beyond the first that meets the bound on the sampled texels, and nothing that
+/// is not worth its layers.
+std::vector<Candidate> candidates(const FragmentStream& stream, const VisibilityOptions& options,
+                                  const Context& context) {
+  const LayerSamples samples(stream);
+  std::vector<Candidate> all;
+  for (const int layers : kChoices) {
+    const auto verdict = samples.leastBound(options.sizes, layers, options.past, context);
+    all.push_back({layers, verdict.size, verdict.value});
+  }
+  const double least = std::ranges::min_element(all, {}, &Candidate::bound)->bound;
+  const double aim = std::max(options.bound, kInVain * least);
+  std::erase_if(all, [&](const Candidate& c) { return c.bound > aim; });
+  return all;
+}
 
 }  // namespace
 
@@ -137,23 +160,26 @@ MapResult buildOpacity(const FragmentStream& stream, const VisibilityOptions& op
 MapResult buildDeepOpacity(const FragmentStream& stream, const VisibilityOptions& options,
                            const ChannelSource& channels, const Context& context) {
   const DepthRange range = depthRange(stream, context);
-  const auto build = [&](int layers) {
+  const auto build = [&](int layers, double size) {
     VisibilityOptions chosen = options;
     chosen.layers = layers;
-    if (!(chosen.layerSize > 0)) {
-      chosen.layerSize = chooseLayerSize(stream, chosen.sizes, layers, chosen.past, context).size;
-    }
+    chosen.layerSize = size;
     return withLayers(stream, chosen, range, channels, context);
   };
-  if (options.layers > 0) return build(options.layers);
-  MapResult map = build(kChoices[0]);
-  for (std::size_t i = 1; i < std::size(kChoices) && map.ok(); ++i) {
+  if (options.layers > 0) {
+    const double size =
+        options.layerSize > 0
+            ? options.layerSize
+            : chooseLayerSize(stream, options.sizes, options.layers, options.past, context).size;
+    return build(options.layers, size);
+  }
+  // The whole map decides; the sampled texels only say where to begin.
+  const std::vector<Candidate> tried = candidates(stream, options, context);
+  MapResult map = build(tried[0].layers, options.layerSize > 0 ? options.layerSize : tried[0].size);
+  for (std::size_t i = 1; i < tried.size() && map.ok(); ++i) {
     const double bound = (*map)->aPosterioriBound().mean;
-    if (bound <= options.bound) break;
-    MapResult finer = build(kChoices[i]);
-    // A layer takes away at least what one fragment does: there comes a point where more layers are in vain.
-    if (finer.ok() && (*finer)->aPosterioriBound().mean > kLeastGain * bound) break;
-    map = std::move(finer);
+    if (bound <= options.bound || tried[i - 1].bound > options.bound) break;
+    map = build(tried[i].layers, options.layerSize > 0 ? options.layerSize : tried[i].size);
   }
   return map;
 }

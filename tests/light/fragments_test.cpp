@@ -187,6 +187,17 @@ TEST(Fragments, OrderWithinATexelDoesNotDependOnThreads) {
   EXPECT_TRUE(lists[0] == lists[1] && lists[0] == lists[2]);
 }
 
+TEST(Fragments, SuggestedMapSizeIsTenWidthsATexel) {
+  StrandSet set = wavyStrands(20, 0.001f);
+  const Box box{Vec3::Zero(), Vec3(1, 0, 0)};
+  EXPECT_NEAR(suggestedMapSize(set, box), 100, 1);  // a float's 0.001
+  EXPECT_EQ(suggestedMapSize(set, box, 64), 64);
+  set.widths.assign(set.points.size(), 0.0f);
+  set.metersPerUnit = 1;
+  EXPECT_EQ(suggestedMapSize(set, box), 512);  // 0.08 mm hair in a box of a metre
+  EXPECT_EQ(suggestedMapSize(StrandSet{}, Box{}), 16);
+}
+
 TEST(Fragments, BadOptionsAreRefused) {
   const StrandSet set = wavyStrands(2, 0.01f);
   EXPECT_FALSE(FragmentStream::make(set, squareView(8), {.opacity = 1.5}).ok());

@@ -51,6 +51,10 @@ struct Fragment {
   float beta() const { return opticalDepthOf(alpha); }
 };
 
+/// Texels a side for a map that sees the box: about ten hair's widths each (of the median point), so that a
+/// texel is a mean over hairs; 16 … most.
+int suggestedMapSize(const StrandSet& strands, const Box& box, int most = 512);
+
 /// A segment as it lies on the map.
 struct MapSegment {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< LightView::project of the ends, after cutting
