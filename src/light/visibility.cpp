@@ -141,9 +141,13 @@ double VisibilityMap::opticalDepth(const Vec3& world) const {
   const Vec3 p = view_.project(world);
   const bool inFront = p.allFinite() && (!view_.perspective || p.z() > 0);
   if (!inFront || !(p.x() >= 0 && p.x() < view_.size && p.y() >= 0 && p.y() < view_.size)) return 0;
+  return opticalDepthAt(std::size_t(p.y()) * std::size_t(view_.size) + std::size_t(p.x()), p.z());
+}
+
+double VisibilityMap::opticalDepthAt(std::size_t texel, double depth) const {
+  if (texel >= std::size_t(view_.size) * std::size_t(view_.size)) return 0;
   std::array<double, 1 + ChannelSource::kMost> out;
-  sumsAt(std::size_t(p.y()) * std::size_t(view_.size) + std::size_t(p.x()), p.z(),
-         std::span(out).first(std::size_t(channels_)));
+  sumsAt(texel, depth, std::span(out).first(std::size_t(channels_)));
   return out[0];
 }
 

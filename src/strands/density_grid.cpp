@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kPointsAChunk = 8192;
 constexpr double kFarthest = 1 << 30;  // in cells; forEachCell's range
+constexpr std::size_t kAhead = 8;      // segments
 constexpr double kQuarterPi = 0.78539816339744831;
 
 struct CellRange {
@@ -80,7 +81,13 @@ void GridDeposit::fill(int slab, std::span<float> values, std::span<std::uint8_t
   const long mask = (1L << log2Size_) - 1;
   const long rowBegin = first_[1] + long(slab) * kSlabRows, rowEnd = rowBegin + kSlabRows;
   for (const auto& chunk : bins_) {
-    for (const std::uint32_t p : chunk[std::size_t(slab)]) {
+    const std::vector<std::uint32_t>& segments = chunk[std::size_t(slab)];
+    for (std::size_t n = 0; n < segments.size(); ++n) {
+#if defined(__GNUC__)
+      // A slab's segments are scattered over the points: without this, waiting for them is most of the time.
+      if (n + kAhead < segments.size()) __builtin_prefetch(&points_[segments[n + kAhead]]);
+#endif
+      const std::uint32_t p = segments[n];
       const GridPoint &u = points_[p], &v = points_[p + 1];
       const Vec3 a(double(u.x), double(u.y), double(u.z)), b(double(v.x), double(v.y), double(v.z));
       Vec3 d = b - a;

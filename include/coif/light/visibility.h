@@ -69,6 +69,8 @@ class VisibilityMap {
   double transmittance(const Vec3& world) const;
   /// Of the hair alone, not filtered: Ω >= 0.
   double opticalDepth(const Vec3& world) const;
+  /// The same at a depth of a texel (y · size + x); 0 for the light map, which has no texels.
+  double opticalDepthAt(std::size_t texel, double depth) const;
   /// All channels of the hair between light and point, filtered if the map is; out has channels() values.
   void sums(const Vec3& world, std::span<float> out) const;
   /// Upper bound of |ΔT| there from the interval that the point is in.

@@ -90,33 +90,43 @@ struct DensityReport {
 Result<DensityGrid> depositHairVolume(const StrandSet& strands, const GridFrame& frame, double defaultWidth,
                                       const Context& context = {}, DensityReport* report = nullptr);
 
+/// Floor without a library call; |v| < 2⁶².
+inline long floorToLong(double v) {
+  const long truncated = long(v);
+  return truncated - (v < double(truncated));
+}
+
 /// visit(i, j, k, from, to) for every cell that the segment a → b passes, in order; [from, to] is the part of
 /// it, in [0, 1]. Coordinates in cells, within ± 2³⁰.
 template <class Visit>
 void forEachCell(const Vec3& a, const Vec3& b, Visit&& visit) {
-  long cell[3];
-  int left[3], step[3];
+  long cell[3], step[3];
+  int left[3];
   double next[3], stride[3];
   int count = 1;
   for (int d = 0; d < 3; ++d) {
-    cell[d] = long(std::floor(a[d]));
-    const long steps = long(std::floor(b[d])) - cell[d];
+    cell[d] = floorToLong(a[d]);
+    const long steps = floorToLong(b[d]) - cell[d];
     step[d] = steps < 0 ? -1 : 1;
-    left[d] = int(std::abs(steps));
+    left[d] = int(steps < 0 ? -steps : steps);
     count += left[d];
-    const double delta = b[d] - a[d];
-    stride[d] = left[d] > 0 ? 1 / std::abs(delta) : 0;
-    next[d] = left[d] > 0 ? (double(cell[d] + (steps > 0 ? 1 : 0)) - a[d]) / delta : 2;
+    next[d] = 2, stride[d] = 0;
+    if (left[d] == 0) continue;
+    const double perDelta = 1 / (b[d] - a[d]);
+    stride[d] = std::abs(perDelta);
+    next[d] = (double(cell[d] + (steps > 0)) - a[d]) * perDelta;
   }
   // The number of faces is known beforehand, so rounding can displace a crossing but never lose one.
-  for (double from = 0; count > 0; --count) {
+  double from = 0;
+  for (; count > 1; --count) {
     const int d = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : (next[1] <= next[2] ? 1 : 2);
-    const double to = count == 1 ? 1.0 : std::clamp(next[d], from, 1.0);
+    const double to = std::clamp(next[d], from, 1.0);
     visit(cell[0], cell[1], cell[2], from, to);
     from = to;
     cell[d] += step[d];
     next[d] = --left[d] > 0 ? next[d] + stride[d] : 2;
   }
+  visit(cell[0], cell[1], cell[2], from, 1.0);
 }
 
 }  // namespace coif
