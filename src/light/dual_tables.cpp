@@ -34,14 +34,15 @@ void put(std::vector<float>& table, std::size_t index, const Vec3& value) {
 
 // N at the nodes, scaled so that the trapezoid rule gives each lobe's attenuation exactly.
 void fillAzimuthal(const FibreScattering& fibre, DualScatteringTables& out) {
+  std::array<double, kAzimuths> phis;
+  for (int a = 0; a < kAzimuths; ++a) phis[std::size_t(a)] = kPi * a / (kAzimuths - 1);
   for (int i = 0; i < kAzimuthInclinations; ++i) {
     const double theta = kPi / 2 * i / (kAzimuthInclinations - 1);
     const std::array<Vec3, 4> exact = fibre.attenuation(-theta, theta);
     std::array<Vec3, 4> sum;
     sum.fill(Vec3::Zero());
-    std::vector<std::array<Vec3, 4>> ring(kAzimuths);
+    const std::vector<std::array<Vec3, 4>> ring = fibre.azimuthal(-theta, theta, phis);
     for (int a = 0; a < kAzimuths; ++a) {
-      ring[std::size_t(a)] = fibre.azimuthal(-theta, theta, kPi * a / (kAzimuths - 1));
       for (int p = 0; p < 4; ++p) sum[p] += ring[std::size_t(a)][p] * circleWeight(a);
     }
     for (int p = 0; p < 4; ++p) {

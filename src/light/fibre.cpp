@@ -57,7 +57,9 @@ Vec3 FibreScattering::evaluate(const Vec3& wi, const Vec3& wo, double h) const {
 Vec3 FibreScattering::evaluate(const Vec3& wi, const Vec3& wo) const {
   if (!usable(wi, wo, 0)) return Vec3::Zero();
   const Bearing i(wi), o(wo);
-  const std::array<Vec3, 4> azimuthal = impl_->meanAzimuth(i.theta, o.theta, i.phi - o.phi);
+  const double phi = i.phi - o.phi;
+  std::array<Vec3, 4> azimuthal;
+  impl_->meanAzimuths(i.theta, o.theta, {&phi, 1}, {&azimuthal, 1});
   Vec3 sum = Vec3::Zero();
   for (int p = 0; p < 4; ++p) sum += azimuthal[p] * impl_->longitudinal(p, i.theta, o.theta, 0);
   return sum;
@@ -102,7 +104,14 @@ double FibreScattering::longitudinal(FibreLobe lobe, double thetaI, double theta
 }
 
 std::array<Vec3, 4> FibreScattering::azimuthal(double thetaI, double thetaO, double phi) const {
-  return impl_->meanAzimuth(Inclination::ofAngle(thetaI), Inclination::ofAngle(thetaO), phi);
+  return azimuthal(thetaI, thetaO, std::span(&phi, 1)).front();
+}
+
+std::vector<std::array<Vec3, 4>> FibreScattering::azimuthal(double thetaI, double thetaO,
+                                                            std::span<const double> phis) const {
+  std::vector<std::array<Vec3, 4>> out(phis.size());
+  impl_->meanAzimuths(Inclination::ofAngle(thetaI), Inclination::ofAngle(thetaO), phis, out);
+  return out;
 }
 
 Vec3 FibreScattering::azimuthal(FibreLobe lobe, double thetaI, double thetaO, double phi) const {

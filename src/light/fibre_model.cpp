@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kStrips = 96;               // over the fibre's width, even in the angle of the normal
+constexpr int kGainNodes = 129;           // crowded towards ±90°
 constexpr double kSmallestCosine = 1e-3;  // 1 / cos² of the difference angle stays below 1e6
 
 double within(double value, double low, double high) {
@@ -39,12 +40,14 @@ double gaussian(double x, double variance) {
   return std::exp(-x * x / (2 * variance)) / std::sqrt(2 * kPi * variance);
 }
 
+double cosineLogArea(double n) {
+  return 0.5 * std::log(kPi) + std::lgamma(n / 2 + 0.5) - std::lgamma(n / 2 + 1);
+}
+
 // cosⁿ x over its area on [−π/2, π/2].
-double cosinePower(double x, double n) {
+double cosinePower(double x, double n, double logArea) {
   const double cosine = std::cos(x);
-  if (cosine <= 0) return 0;
-  const double logArea = 0.5 * std::log(kPi) + std::lgamma(n / 2 + 0.5) - std::lgamma(n / 2 + 1);
-  return std::exp(n * std::log(cosine) - logArea);
+  return cosine > 0 ? std::exp(n * std::log(cosine) - logArea) : 0;
 }
 
 Inclination difference(const Inclination& i, const Inclination& o) {
@@ -55,6 +58,10 @@ Inclination difference(const Inclination& i, const Inclination& o) {
 double coneFactor(const Inclination& i, const Inclination& o) {
   const double cosine = std::max(kSmallestCosine, difference(i, o).cos);
   return i.cos / (cosine * cosine);
+}
+
+double gainNode(int node) {
+  return kPi / 2 * std::sin(kPi * (double(node) / (kGainNodes - 1) - 0.5));
 }
 
 // Offset h of the border after so many strips, and the share of the width of the strip before it.
@@ -74,10 +81,12 @@ FibreModelTerms::FibreModelTerms(const FibreParameters& wanted)
   shifts = {-2 * tilt, tilt, 4 * tilt, 0};
   kajiyaKay.fill(Vec3::Zero());
   if (parameters.model == FibreModel::Marschner) shifts[2] = 3 * tilt;
+  if (parameters.model == FibreModel::Marschner) limitGain();
   if (parameters.model != FibreModel::KajiyaKay) return;
   shifts.fill(0);
   variances = {v, v, v, 1e4};  // of the diffuse part's proposal: M is then even over the sphere
-  kajiyaKayExponent = 1 / v;
+  cosineLogArea_ = cosineLogArea(1 / v);
+  limitGain();
   const double specular = fresnel(1, parameters.index);
   kajiyaKay[0] = Vec3::Constant(specular);
   kajiyaKay[3] = (1 - specular) * albedoFromAbsorption(parameters.absorption, parameters.azimuthalRoughness);
@@ -90,24 +99,59 @@ Inclination FibreModelTerms::tilted(int lobe, const Inclination& o) const {
 double FibreModelTerms::longitudinal(int lobe, const Inclination& i, const Inclination& o,
                                      double extraVariance) const {
   const double variance = variances[lobe] + extraVariance;
-  switch (parameters.model) {
-    case FibreModel::Chiang:
-      return longitudinalDensity(i, tilted(lobe, o), variance);
-    case FibreModel::Marschner:
-      if (lobe == 3) return 0;
-      return gaussian(i.angle + o.angle - shifts[lobe], variance) * coneFactor(i, o);
-    case FibreModel::KajiyaKay:
-      if (lobe == 3) return i.cos * 2 / kPi;
-      if (lobe != 0) return 0;
-      return cosinePower(i.angle + o.angle, 1 / variance) * coneFactor(i, o);
+  if (parameters.model == FibreModel::Chiang) return longitudinalDensity(i, tilted(lobe, o), variance);
+  if (lobe == 3) return parameters.model == FibreModel::KajiyaKay ? i.cos * 2 / kPi : 0;
+  if (gainLimits_[lobe].empty()) return 0;
+  return gaussianLobe(lobe, i, o, variance) * gainLimit(lobe, i.angle) * gainLimit(lobe, o.angle);
+}
+
+double FibreModelTerms::gaussianLobe(int lobe, const Inclination& i, const Inclination& o,
+                                     double variance) const {
+  const double sum = i.angle + o.angle - shifts[lobe];
+  if (parameters.model == FibreModel::Marschner) return gaussian(sum, variance) * coneFactor(i, o);
+  const double n = 1 / variance;
+  const double logArea = variance == variances[lobe] ? cosineLogArea_ : cosineLogArea(n);
+  return cosinePower(sum, n, logArea) * coneFactor(i, o);
+}
+
+void FibreModelTerms::limitGain() {
+  const int lobes = parameters.model == FibreModel::Marschner ? 3 : 1;
+  for (int p = 0; p < lobes; ++p) {
+    const double reach = 6 * std::sqrt(variances[p]);
+    std::vector<double> areas(kGainNodes);
+    for (int node = 0; node < kGainNodes; ++node) {
+      const Inclination o = Inclination::ofAngle(gainNode(node));
+      const double middle = shifts[p] - o.angle;
+      const double low = std::max(-kPi / 2, middle - reach), high = std::min(kPi / 2, middle + reach);
+      constexpr int steps = 120;
+      for (int s = 0; s < steps && high > low; ++s) {
+        const Inclination i = Inclination::ofAngle(low + (high - low) * (s + 0.5) / steps);
+        areas[node] += gaussianLobe(p, i, o, variances[p]) * i.cos * (high - low) / steps;
+      }
+    }
+    gainLimits_[p].resize(kGainNodes);
+    for (int node = 0; node < kGainNodes; ++node) {  // of the neighbours too: between nodes it holds as well
+      const double most =
+          std::max({areas[std::max(0, node - 1)], areas[node], areas[std::min(kGainNodes - 1, node + 1)]});
+      gainLimits_[p][node] = 1 / std::max(1.0, most);
+    }
   }
-  return 0;
+}
+
+double FibreModelTerms::gainLimit(int lobe, double theta) const {
+  const double u = std::asin(std::clamp(theta / (kPi / 2), -1.0, 1.0)) / kPi + 0.5;
+  const double x = u * (kGainNodes - 1);
+  const int low = std::min(int(x), kGainNodes - 2);
+  return gainLimits_[lobe][low] + (x - low) * (gainLimits_[lobe][low + 1] - gainLimits_[lobe][low]);
 }
 
 Crossing FibreModelTerms::cross(const Inclination& i, const Inclination& o, double h) const {
   if (parameters.model == FibreModel::KajiyaKay) return {kajiyaKay, 0, 0};
-  const bool near = parameters.model == FibreModel::Chiang;
-  return crossFibre(near ? o : difference(i, o), h, parameters.index, parameters.absorption);
+  return crossFibre(crossedAt(i, o), h, parameters.index, parameters.absorption);
+}
+
+Inclination FibreModelTerms::crossedAt(const Inclination& i, const Inclination& o) const {
+  return parameters.model == FibreModel::Chiang ? o : difference(i, o);
 }
 
 double FibreModelTerms::azimuth(int lobe, const Crossing& crossing, double phi) const {
@@ -115,31 +159,31 @@ double FibreModelTerms::azimuth(int lobe, const Crossing& crossing, double phi) 
   return azimuthalRoughness.density(phi - crossing.azimuth(lobe));
 }
 
-std::array<Vec3, 4> FibreModelTerms::meanAzimuth(const Inclination& i, const Inclination& o,
-                                                 double phi) const {
+void FibreModelTerms::meanAzimuths(const Inclination& i, const Inclination& o, std::span<const double> phis,
+                                   std::span<std::array<Vec3, 4>> out) const {
   if (parameters.model == FibreModel::KajiyaKay) {
     std::array<Vec3, 4> even = kajiyaKay;
     for (Vec3& value : even) value /= 2 * kPi;
-    return even;
+    std::fill(out.begin(), out.end(), even);
+    return;
   }
-  std::array<Vec3, 4> sum;
-  sum.fill(Vec3::Zero());
-  std::array<double, 3> low{};
-  for (int strip = 0; strip <= kStrips; ++strip) {
-    const Crossing border = cross(i, o, stripEdge(strip));
-    std::array<double, 3> high{};
-    for (int p = 0; p < 3; ++p) high[p] = phi - border.azimuth(p);
-    if (strip > 0) {
-      const Crossing middle = cross(i, o, stripEdge(strip - 0.5));
-      const double share = stripShare(strip);
+  const Inclination at = crossedAt(i, o);
+  for (auto& sum : out) sum.fill(Vec3::Zero());
+  Crossing low = crossFibre(at, -1, parameters.index, parameters.absorption, false);
+  for (int strip = 1; strip <= kStrips; ++strip) {
+    const Crossing middle = crossFibre(at, stripEdge(strip - 0.5), parameters.index, parameters.absorption);
+    const Crossing high = crossFibre(at, stripEdge(strip), parameters.index, parameters.absorption, false);
+    const double share = stripShare(strip);
+    for (std::size_t k = 0; k < phis.size(); ++k) {
       for (int p = 0; p < 3; ++p) {
-        sum[p] += middle.attenuation[p] * (share * azimuthalRoughness.meanDensity(low[p], high[p]));
+        out[k][p] +=
+            middle.attenuation[p] *
+            (share * azimuthalRoughness.meanDensity(phis[k] - low.azimuth(p), phis[k] - high.azimuth(p)));
       }
-      sum[3] += middle.attenuation[3] * (share / (2 * kPi));
+      out[k][3] += middle.attenuation[3] * (share / (2 * kPi));
     }
     low = high;
   }
-  return sum;
 }
 
 std::array<Vec3, 4> FibreModelTerms::meanAttenuation(const Inclination& i, const Inclination& o) const {

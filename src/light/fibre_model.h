@@ -1,6 +1,9 @@
 // One fibre model: the factors of its lobes, and the proposals by which they are sampled.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "coif/light/fibre.h"
 #include "fibre_terms.h"
 
@@ -14,7 +17,6 @@ struct FibreModelTerms {
   std::array<double, 4> shifts;     ///< of θ_i + θ_o
   TrimmedLogistic azimuthalRoughness;
   std::array<Vec3, 4> kajiyaKay;  ///< what its lobes leave of the light
-  double kajiyaKayExponent = 1;
 
   explicit FibreModelTerms(const FibreParameters& wanted);
 
@@ -23,8 +25,9 @@ struct FibreModelTerms {
   Crossing cross(const Inclination& i, const Inclination& o, double h) const;
   /// Density over φ = φ_i − φ_o.
   double azimuth(int lobe, const Crossing& crossing, double phi) const;
-  /// ∫ attenuation · azimuth dh / 2 of every lobe.
-  std::array<Vec3, 4> meanAzimuth(const Inclination& i, const Inclination& o, double phi) const;
+  /// ∫ attenuation · azimuth dh / 2 of every lobe, at these azimuths.
+  void meanAzimuths(const Inclination& i, const Inclination& o, std::span<const double> phis,
+                    std::span<std::array<Vec3, 4>> out) const;
   /// ∫ attenuation dh / 2.
   std::array<Vec3, 4> meanAttenuation(const Inclination& i, const Inclination& o) const;
 
@@ -42,7 +45,16 @@ struct FibreModelTerms {
 
  private:
   bool isotropic(int lobe) const { return lobe == 3 || parameters.model == FibreModel::KajiyaKay; }
+  Inclination crossedAt(const Inclination& i, const Inclination& o) const;
   Inclination tilted(int lobe, const Inclination& o) const;
+  double gaussianLobe(int lobe, const Inclination& i, const Inclination& o, double variance) const;
+  void limitGain();
+  double gainLimit(int lobe, double theta) const;
+
+  // A gaussian in inclination gains light at grazing angles, up to four times. What each side is multiplied
+  // by so that no lobe does; the same for both sides, so reciprocity stays. Empty: Chiang.
+  std::array<std::vector<double>, 3> gainLimits_;
+  double cosineLogArea_ = 0;  // of Kajiya–Kay's exponent
 };
 
 }  // namespace coif

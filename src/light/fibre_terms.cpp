@@ -95,17 +95,18 @@ double Crossing::azimuth(int order) const {
   return 2 * order * gammaInside - 2 * gamma + order * kPi;
 }
 
-Crossing crossFibre(const Inclination& at, double h, double index, const Vec3& absorption) {
+Crossing crossFibre(const Inclination& at, double h, double index, const Vec3& absorption, bool withLoss) {
   h = std::clamp(h, -1.0, 1.0);
   const double insideCos = std::max(1e-6, safeRoot(1 - at.sin * at.sin / (index * index)));
   // h / η', η' = √(η² − sin² θ) / cos θ
   const double sinGamma = std::clamp(h * at.cos / std::max(1e-9, index * insideCos), -1.0, 1.0);
-  const double length = 2 * safeRoot(1 - sinGamma * sinGamma) / insideCos;
-  const double reflected = fresnel(at.cos * safeRoot(1 - h * h), index);
-  const double entering = 1 - reflected;
   Crossing out;
   out.gamma = std::asin(h);
   out.gammaInside = std::asin(sinGamma);
+  if (!withLoss) return out;
+  const double length = 2 * safeRoot(1 - sinGamma * sinGamma) / insideCos;
+  const double reflected = fresnel(at.cos * safeRoot(1 - h * h), index);
+  const double entering = 1 - reflected;
   for (int c = 0; c < 3; ++c) {
     const double left = std::exp(-absorption[c] * length);
     const double once = entering * entering * left, again = left * reflected;

@@ -48,7 +48,9 @@ struct Crossing {
   /// Azimuth of order p against the direction it came from: 2pγ_t − 2γ + pπ.
   double azimuth(int order) const;
 };
-Crossing crossFibre(const Inclination& at, double h, double index, const Vec3& absorption);
+/// `withLoss` false leaves the attenuations out.
+Crossing crossFibre(const Inclination& at, double h, double index, const Vec3& absorption,
+                    bool withLoss = true);
 
 /// Reflectance of unpolarised light, `index` >= 1 inside.
 double fresnel(double cosine, double index);
