@@ -16,7 +16,7 @@ constexpr double kLeft = 78, kRight = 560, kTop = 52, kBottom = 402;
 constexpr double kLegendLine = 22;
 // Okabe and Ito's colours: told apart by colour-blind readers too; shapes repeat the distinction.
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                    "#56b4e9", "#e69f00", "#444444"};
+                                    "#56b4e9", "#e69f00", "#444444", "#882255", "#117733"};
 // An error of exactly 0 has no place on a logarithmic axis; it is drawn here, at double's own precision.
 constexpr double kErrorFloor = 1e-17;
 

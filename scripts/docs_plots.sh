@@ -1,0 +1,11 @@
+#!/bin/bash
+# The plots of docs/: runs the benches in full and copies what the pages show. Usage: scripts/docs_plots.sh [COIF]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+coif=${1:-build/release/bin/coif}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$coif" bench visibility -o "$folder"
+for plot in $(grep -o 'plots/visibility-[a-z0-9-]*\.svg' docs/visibility.md); do
+  cp "$folder/$(basename "$plot")" "docs/$plot"
+done
