@@ -20,6 +20,9 @@ constexpr Entry kBenches[] = {
     {"strands", benchStrands},
     {"visibility", benchVisibility},
     {"scattering", benchScattering},
+#ifdef COIF_WITH_PREVIEW
+    {"gpu", benchGpu},
+#endif
 };
 
 }  // namespace

@@ -124,6 +124,7 @@ BenchReport benchCoordinates(const BenchOptions& options);  ///< bench_coordinat
 BenchReport benchStrands(const BenchOptions& options);      ///< bench_strands.cpp
 BenchReport benchVisibility(const BenchOptions& options);   ///< bench_visibility.cpp
 BenchReport benchScattering(const BenchOptions& options);   ///< bench_scattering.cpp
+BenchReport benchGpu(const BenchOptions& options);          ///< bench_gpu.cpp; not without COIF_WITH_PREVIEW
 
 }  // namespace coif
 

@@ -14,7 +14,7 @@ namespace coif::cli {
 namespace {
 
 struct RenderArguments {
-  std::string scene, output, size = "1024x1024", camera;
+  std::string scene, output, size = "1024x1024", camera, lod = "auto";
   std::vector<float> color;
   StrandArguments strands;
   EvaluateArguments evaluate;
@@ -69,6 +69,22 @@ Box framed(const StrandSet* strands, const HairMesh& mesh, UpAxis upAxis) {
   return box;
 }
 
+/// "auto", "off" or a part of the strands.
+bool parseLod(const std::string& text, PreviewOptions& options) {
+  if (text == "auto") return true;
+  if (text == "off") return options.lod = false, true;
+  int used = 0;
+  return std::sscanf(text.c_str(), "%lf%n", &options.strandFraction, &used) == 1 &&
+         used == int(text.size()) && options.strandFraction > 0 && options.strandFraction <= 1;
+}
+
+std::string checkLod(const std::string& text) {
+  PreviewOptions options;
+  return parseLod(text, options)
+             ? ""
+             : "--lod wants 'auto', 'off' or a part of the strands above 0 and up to 1, not '" + text + "'";
+}
+
 Status render(const RenderArguments& arguments, Session& session) {
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
   arguments.strands.apply(scene);
@@ -88,7 +104,8 @@ Status render(const RenderArguments& arguments, Session& session) {
                           ? Vec3f(arguments.color[0], arguments.color[1], arguments.color[2])
                           : scene.look.hairColor;
   options.shadows = !arguments.noShadows;
-  options.lod = !arguments.noLod;
+  parseLod(arguments.lod, options);
+  if (arguments.noLod) options.lod = false;
   options.transparentBackground = arguments.transparent;
   double azimuth = scene.look.azimuthDeg, elevation = scene.look.elevationDeg;
   if (!arguments.camera.empty()) parseAngles(arguments.camera, azimuth, elevation);
@@ -131,7 +148,11 @@ void addRender(CLI::App& app, Session& session) {
   command->add_flag("--hair-mesh", arguments->hairMesh, "Draw the hair mesh over the picture");
   command->add_flag("--no-strands", arguments->noStrands, "Leave the strands out");
   command->add_flag("--no-shadows", arguments->noShadows, "Leave the shadow pass out");
-  command->add_flag("--no-lod", arguments->noLod, "Draw every strand and every point");
+  command
+      ->add_option("--lod", arguments->lod,
+                   "Strands to draw: auto (by their width on the screen), a part from 0 to 1, or off")
+      ->check(CLI::Validator(checkLod, "auto|F|off"));
+  command->add_flag("--no-lod", arguments->noLod, "Draw every strand and every point: --lod off");
   command->add_flag("--transparent", arguments->transparent, "Transparent background");
   arguments->strands.addTo(*command);
   arguments->evaluate.addTo(*command);

@@ -10,7 +10,7 @@
 #include "bind_scalp.h"
 #include "bind_strands.h"
 #include "coif/io/safe_file.h"
-#include "coif/preview/preview.h"
+#include "coif/preview/session.h"
 
 namespace coif::python {
 
@@ -101,6 +101,107 @@ Rgba render(const Strands* strands, const std::optional<Head>& head, const HairM
   return renderWith(own, view, options);
 }
 
+PolygonMesh const& meshOf(const Head& head) {
+  const auto* scalp = std::get_if<ScalpModel>(&head);
+  return scalp ? scalp->surface->mesh() : std::get<PolygonMesh>(head);
+}
+
+nb::dict uploadedOf(const PreviewUpload& bytes) {
+  nb::dict out;
+  out["strands"] = bytes.strands;
+  out["hair_mesh"] = bytes.hairMesh;
+  out["head"] = bytes.head;
+  out["plan"] = bytes.plan;
+  out["frame"] = bytes.frame;
+  return out;
+}
+
+/// A session with what the last picture said of itself.
+struct Session {
+  PreviewSession session;
+  PreviewUpload uploaded;
+  std::vector<StageReport> stages;
+};
+
+Rgba renderSession(Session& self, std::tuple<int, int> size, const ArrayLike& hairColor, bool transparent,
+                   bool shadows, bool lod, double strandFraction, int subframes) {
+  PreviewOptions options;
+  std::tie(options.width, options.height) = size;
+  options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
+  options.transparentBackground = transparent;
+  options.shadows = shadows;
+  options.lod = lod;
+  options.strandFraction = strandFraction;
+  options.subframes = subframes;
+  Picture picture =
+      Run(0, nb::none())([&](const Context& context) { return self.session.render(options, context); });
+  self.uploaded = picture.uploaded;
+  self.stages = std::move(picture.stages);
+  return arrayOf(std::move(picture.image));
+}
+
+void bindSession(nb::module_& m) {
+  const PreviewOptions defaults;
+  nb::class_<Session>(
+      m, "PreviewSession",
+      "A picture again and again: keeps on the GPU what did not change. Moving the hair mesh uploads "
+      "the mesh alone.")
+      .def(
+          "__init__",
+          [](Session* self, const Preview& preview) {
+            new (self) Session{PreviewSession(preview), {}, {}};
+          },
+          "preview"_a, "Shares the Preview's OpenGL context; use both from one thread at a time.")
+      .def(
+          "set_hair",
+          [](Session& self, const HairMeshModel& mesh, const Strands& strands, Knots knots,
+             std::uint32_t points) { take(self.session.setHair(mesh.mesh(), strands.set, knots, points)); },
+          "hair_mesh"_a, "strands"_a, "knots"_a = Knots::Uniform, "points"_a = 0,
+          "Hair that coif.grow() made on this mesh with these knots; its points are made on the GPU from now "
+          "on, at "
+          "most `points` a strand (0: as many as it has). Raises ValueError for strands that do not say "
+          "where they "
+          "grow.")
+      .def(
+          "set_strands",
+          [](Session& self, const Strands& strands) { take(self.session.setStrands(strands.set)); },
+          "strands"_a, "Strands as they are.")
+      .def(
+          "move_hair",
+          [](Session& self, const ArrayLike& positions) {
+            const auto points = toPoints(positions, "positions");
+            take(self.session.moveHair(points));
+          },
+          "positions"_a,
+          "New positions (V×3) for the vertices of set_hair's mesh, in the order of its vertex_ids.")
+      .def(
+          "set_head", [](Session& self, const Head& head) { take(self.session.setHead(meshOf(head))); },
+          "head"_a, "A Scalp or PolygonMesh.")
+      .def(
+          "set_camera", [](Session& self, const Camera& camera) { self.session.setCamera(camera); },
+          "camera"_a, "Uploads no strand data.")
+      .def("render", &renderSession, nb::kw_only(), "size"_a = nb::make_tuple(1024, 1024),
+           "hair_color"_a =
+               nb::make_tuple(defaults.hairColor.x(), defaults.hairColor.y(), defaults.hairColor.z()),
+           "transparent"_a = false, "shadows"_a = true, "lod"_a = true, "strand_fraction"_a = 0.0,
+           "subframes"_a = defaults.subframes,
+           "The picture: height×width×4 uint8, sRGB with straight alpha, rows from the top. strand_fraction: "
+           "part of "
+           "the strands to draw, 0: by their width on the screen.")
+      .def_prop_ro(
+          "uploaded", [](const Session& self) { return uploadedOf(self.uploaded); },
+          "Bytes that the last picture sent to the GPU, by kind.")
+      .def_prop_ro(
+          "stages",
+          [](const Session& self) {
+            std::vector<std::tuple<std::string, std::string, std::string>> out;
+            for (const StageReport& stage : self.stages)
+              out.emplace_back(stage.name, name(stage.state), stage.reason);
+            return out;
+          },
+          "What the last picture did: (stage, ran, reused or skipped, why).");
+}
+
 void savePng(const std::filesystem::path& path, const ArrayLike& rgba) {
   const auto pixels = toArray<std::uint64_t>(rgba, "rgba", {-1, -1, 4});
   Image image{int(pixels.shape(1)), int(pixels.shape(0)), {}};
@@ -154,6 +255,7 @@ void bindPreview(nb::module_& m) {
           "Raises Error where there is neither a GPU nor Mesa's software renderer.")
       .def_prop_ro("renderer", &Preview::renderer, "The driver's name for itself.")
       .def_prop_ro("software", &Preview::software, "Whether the CPU draws.");
+  bindSession(m);
   m.def(
       "render", &render, "strands"_a.none() = nb::none(), "head"_a.none() = nb::none(),
       "hair_mesh"_a.none() = nb::none(), nb::kw_only(), "size"_a = nb::make_tuple(1024, 1024),

@@ -41,7 +41,7 @@ struct DetailOptions {
   bool lod = true;      ///< false: every strand with every point
   double fraction = 0;  ///< of the strands; 0: by their width on the screen
   std::size_t maxSegments = 1000000;
-  double tolerancePx = 0.3;          ///< how far a curve may move
+  double tolerancePx = 0.5;          ///< how far a curve may move
   double longestPx = 32;             ///< of a segment, as shading is interpolated along it
   double ribbonPx = 0.4;             ///< strands are widened to about this
   std::size_t leastStrands = 12000;  ///< below, single hairs are told apart

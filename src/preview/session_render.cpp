@@ -82,7 +82,7 @@ DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
 // A hair in the map is a texel wide, and nothing looks at a map from near.
 DetailOptions mapDetailOf(const PreviewOptions& options, const Device& device) {
   DetailOptions detail = detailOf(options, device);
-  detail.tolerancePx = 0.5;
+  detail.tolerancePx = 0.7;
   detail.ribbonPx = 1;
   detail.longestPx = 64;
   detail.maxSegments /= 2;

@@ -41,6 +41,32 @@ def test_the_hair_has_the_colour_that_was_asked_for(preview, tuft):
         assert mean.argmax() == channel
 
 
+def test_a_session_moves_the_mesh_and_uploads_it_alone(preview, tuft):
+    """The whole mesh moved by half the view: the picture is the old one, moved; only its vertices went to the GPU."""
+    strands = coif.grow(tuft, count=3000, width=0.02)
+    positions = np.array(tuft.positions)
+    session = coif.PreviewSession(preview)
+    session.set_hair(tuft, strands)
+    lo, hi = positions.min(axis=0), positions.max(axis=0)
+    wide = (hi[0] - lo[0]) * np.array([1.0, 0, 0])
+    session.set_camera(coif.Camera.frame(lo - wide, hi + wide, azimuth=0, elevation=0))
+    still = session.render(size=(120, 120), transparent=True, shadows=False)
+    assert session.uploaded["strands"] >= 3000 * 48
+    assert still[..., 3].sum() > 0
+    raised = positions.copy()
+    raised[raised[:, 1] > 0] *= (1.0, 0.5, 1.0)  # the hair half as long; roots stay
+    session.move_hair(raised)
+    moved = session.render(size=(120, 120), transparent=True, shadows=False)
+    assert session.uploaded["strands"] == 0
+    assert session.uploaded["hair_mesh"] == 16 * len(positions)
+    rows = lambda image: np.flatnonzero(image[..., 3].sum(axis=1))
+    assert np.ptp(rows(moved)) == pytest.approx(0.5 * np.ptp(rows(still)), abs=4)
+    session.render(size=(120, 120), transparent=True, shadows=False)
+    assert dict((n, s) for n, s, _ in session.stages)["strands for the eye"] == "reused"
+    with pytest.raises(ValueError):
+        session.move_hair(raised[:-1])
+
+
 def test_pictures_are_written_as_png(preview, tuft, tmp_path):
     image = coif.render(hair_mesh=tuft, size=(32, 24), preview=preview)
     coif.save_png(tmp_path / "mesh.png", image)
