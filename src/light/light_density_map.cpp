@@ -1,6 +1,7 @@
 #include "coif/light/light_density_map.h"
 
 #include <limits>
+#include <memory>
 
 #include "coif/base/parallel.h"
 
@@ -81,29 +82,31 @@ bool LightDensityMap::gather(const FragmentStream& stream, const Context& contex
   return !context.cancelled();
 }
 
-void LightDensityMap::accumulate(int slab, const GridDeposit& deposit) {
-  const int log2 = options_.log2Size;
-  const long n = 1L << log2, mask = n - 1;
-  for (long k = 0; k < n; ++k) {
-    for (long j = 0; j < GridDeposit::kSlabRows; ++j) {
-      const long row = first_[1] + slab * GridDeposit::kSlabRows + j;
-      touched_[std::size_t((k & mask) * n + (row & mask))] = 0;
-    }
-  }
-  deposit.fill(slab, values_, touched_);
-  Eigen::ArrayXf sum(n), passed(n);
-  for (long j = 0; j < GridDeposit::kSlabRows; ++j) {
-    const long row = first_[1] + slab * GridDeposit::kSlabRows + j;
+// Slabs [begin, end): hair into cells, cells into T by columns along the light.
+void LightDensityMap::accumulate(std::size_t begin, std::size_t end, const GridDeposit& deposit) {
+  constexpr long kRows = GridDeposit::kSlabRows;
+  const long n = 1L << options_.log2Size, mask = n - 1;
+  const auto cells = std::make_unique_for_overwrite<float[]>(deposit.slabCells());
+  std::vector<std::uint8_t> touched(deposit.slabRows());
+  Eigen::ArrayXXf sum(n, kRows), passed(n, kRows);
+  const long turn = first_[0] & mask;  // where in a row of the grid the first column lies
+  for (std::size_t slab = begin; slab < end; ++slab) {
+    std::ranges::fill(touched, std::uint8_t(0));
+    deposit.fill(int(slab), std::span(cells.get(), deposit.slabCells()), touched);
     sum.setZero();
     passed.setOnes();
-    for (long k = first_[2]; k < first_[2] + n; ++k) {
-      const std::size_t at = std::size_t((k & mask) * n + (row & mask));
-      Eigen::Map<Eigen::ArrayXf> cells(&values_[at << log2], n);
-      if (touched_[at]) {
-        sum += cells;
-        passed = (-sum).exp();
+    for (long k = 0; k < n; ++k) {
+      for (long j = 0; j < kRows; ++j) {
+        const std::size_t at = std::size_t(k * kRows + j);
+        if (touched[at]) {
+          sum.col(j) += Eigen::Map<const Eigen::ArrayXf>(cells.get() + at * std::size_t(n), n);
+          passed.col(j) = (-sum.col(j)).exp();
+        }
+        const long row = first_[1] + long(slab) * kRows + j;
+        float* out = &values_[std::size_t((((first_[2] + k) & mask) * n + (row & mask)) * n)];
+        std::copy_n(passed.col(j).data(), n - turn, out + turn);
+        std::copy_n(passed.col(j).data() + (n - turn), turn, out);
       }
-      cells = passed;
     }
   }
 }
@@ -123,9 +126,9 @@ Status LightDensityMap::update(const FragmentStream& stream, const Context& cont
       continue;
     }
     first_ = deposit.first();
-    parallelFor(context, std::size_t(deposit.slabCount()), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t slab = begin; slab < end; ++slab) accumulate(int(slab), deposit);
-    });
+    constexpr std::size_t kSlabsAChunk = 2;
+    parallelFor(context, std::size_t(deposit.slabCount()), kSlabsAChunk,
+                [&](std::size_t begin, std::size_t end) { accumulate(begin, end, deposit); });
     dropped_ = stream.droppedStrands();
     if (context.cancelled()) break;
     return {};
@@ -142,7 +145,6 @@ Result<LightDensityMap> LightDensityMap::make(const FragmentStream& stream,
   map.view_ = stream.view();
   map.options_ = options;
   map.values_.resize(std::size_t(1) << (3 * options.log2Size));
-  map.touched_.resize(std::size_t(1) << (2 * options.log2Size));
   map.fitCell(stream);
   COIF_TRY(map.update(stream, context));
   return map;

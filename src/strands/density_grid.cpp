@@ -37,7 +37,7 @@ std::vector<std::uint8_t> lastPoints(std::span<const std::uint64_t> offsets, std
 
 GridDeposit::GridDeposit(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets,
                          int log2Size, Length length, const Context& context)
-    : points_(points), log2Size_(log2Size), length_(length) {
+    : log2Size_(log2Size), length_(length) {
   const std::size_t chunks = (points.size() + kPointsAChunk - 1) / kPointsAChunk;
   std::vector<CellRange> ranges(chunks);
   parallelFor(context, points.size(), kPointsAChunk, [&](std::size_t begin, std::size_t end) {
@@ -64,44 +64,41 @@ GridDeposit::GridDeposit(std::span<const GridPoint> points, std::span<const std:
   if (!fits_) return;
   const std::vector<std::uint8_t> last = lastPoints(offsets, points.size());
   bins_.resize(chunks);
-  const float origin = float(first_[1]);
+  const std::array<float, 3> origin{float(first_[0]), float(first_[1]), float(first_[2])};
+  const auto moved = [&](const GridPoint& p) {
+    return GridPoint{p.x - origin[0], p.y - origin[1], p.z - origin[2], p.weight};
+  };
   parallelFor(context, points.size(), kPointsAChunk, [&](std::size_t begin, std::size_t end) {
     auto& bins = bins_[begin / kPointsAChunk];
     bins.resize(std::size_t(slabCount()));
     for (std::size_t p = begin; p < end; ++p) {
       if (last[p] || !usable(points[p]) || !usable(points[p + 1])) continue;
-      const float y0 = points[p].y - origin, y1 = points[p + 1].y - origin;
-      const int from = int(std::min(y0, y1)) / kSlabRows, to = int(std::max(y0, y1)) / kSlabRows;
-      for (int slab = from; slab <= to; ++slab) bins[std::size_t(slab)].push_back(std::uint32_t(p));
+      const Segment segment{moved(points[p]), moved(points[p + 1])};
+      const int from = int(std::min(segment.a.y, segment.b.y)) / kSlabRows;
+      const int to = int(std::max(segment.a.y, segment.b.y)) / kSlabRows;
+      for (int slab = from; slab <= to; ++slab) bins[std::size_t(slab)].push_back(segment);
     }
   });
 }
 
-void GridDeposit::fill(int slab, std::span<float> values, std::span<std::uint8_t> touched) const {
-  const long mask = (1L << log2Size_) - 1;
-  const long rowBegin = first_[1] + long(slab) * kSlabRows, rowEnd = rowBegin + kSlabRows;
+void GridDeposit::fill(int slab, std::span<float> cells, std::span<std::uint8_t> touched) const {
+  const long size = 1L << log2Size_, rowBegin = long(slab) * kSlabRows;
   for (const auto& chunk : bins_) {
-    const std::vector<std::uint32_t>& segments = chunk[std::size_t(slab)];
-    for (std::size_t n = 0; n < segments.size(); ++n) {
-#if defined(__GNUC__)
-      // A slab's segments are scattered over the points: without this, waiting for them is most of the time.
-      if (n + kAhead < segments.size()) __builtin_prefetch(&points_[segments[n + kAhead]]);
-#endif
-      const std::uint32_t p = segments[n];
-      const GridPoint &u = points_[p], &v = points_[p + 1];
-      const Vec3 a(double(u.x), double(u.y), double(u.z)), b(double(v.x), double(v.y), double(v.z));
-      Vec3 d = b - a;
+    for (const auto& [u, v] : chunk[std::size_t(slab)]) {
+      const Vec3f a(u.x, u.y, u.z), b(v.x, v.y, v.z);
+      Vec3f d = b - a;
       if (length_ == Length::AcrossLast) d.z() = 0;
-      const double whole = d.norm(), grow = double(v.weight) - double(u.weight);
-      forEachCell(a, b, [&](long i, long j, long k, double from, double to) {
-        if (j < rowBegin || j >= rowEnd) return;
-        const std::size_t row = (std::size_t(k & mask) << log2Size_) | std::size_t(j & mask);
-        float* cells = &values[row << log2Size_];
-        if (!touched[row]) {
-          touched[row] = 1;
-          std::fill_n(cells, mask + 1, 0.0f);
+      const float whole = d.norm(), weight = u.weight * whole, grow = 0.5f * (v.weight - u.weight) * whole;
+      forEachCell(a, b, [&](long i, long j, long k, float from, float to) {
+        const long row = j - rowBegin;
+        if (row < 0 || row >= kSlabRows) return;
+        const std::size_t at = std::size_t(k * kSlabRows + row);
+        float* line = &cells[at << log2Size_];
+        if (!touched[at]) {
+          touched[at] = 1;
+          std::fill_n(line, size, 0.0f);
         }
-        cells[i & mask] += float((double(u.weight) + 0.5 * (from + to) * grow) * (to - from) * whole);
+        line[i] += (weight + (from + to) * grow) * (to - from);
       });
     }
   }
@@ -134,9 +131,24 @@ Result<DensityGrid> depositHairVolume(const StrandSet& strands, const GridFrame&
                      "the hair is longer than the density grid's box: take larger cells");
   }
   DensityGrid grid{frame, std::vector<float>(std::size_t(1) << (3 * frame.log2Size), 0.0f)};
-  std::vector<std::uint8_t> touched(std::size_t(1) << (2 * frame.log2Size), 0);
+  const long size = frame.size();
   parallelFor(context, std::size_t(deposit.slabCount()), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slab = begin; slab < end; ++slab) deposit.fill(int(slab), grid.values, touched);
+    std::vector<float> cells(deposit.slabCells());
+    std::vector<std::uint8_t> touched(deposit.slabRows());
+    for (std::size_t slab = begin; slab < end; ++slab) {
+      std::ranges::fill(touched, std::uint8_t(0));
+      deposit.fill(int(slab), cells, touched);
+      for (std::size_t row = 0; row < touched.size(); ++row) {
+        if (!touched[row]) continue;
+        const long j =
+            deposit.first()[1] + long(slab * GridDeposit::kSlabRows + row % GridDeposit::kSlabRows);
+        const long k = deposit.first()[2] + long(row / GridDeposit::kSlabRows);
+        for (long i = 0; i < size; ++i) {
+          grid.values[frame.index(deposit.first()[0] + i, j, k)] =
+              cells[row * std::size_t(size) + std::size_t(i)];
+        }
+      }
+    }
   });
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the density grid was cancelled");
   if (report != nullptr) report->droppedStrands = std::size_t(std::count(bad.begin(), bad.end(), 1));

@@ -34,14 +34,14 @@ class LightDensityMap {
 
   double transmittance(const Vec3& world) const;
   double cell() const { return cell_; }
-  std::size_t bytes() const { return values_.size() * sizeof(float) + touched_.size(); }
+  std::size_t bytes() const { return values_.size() * sizeof(float); }
   std::size_t droppedStrands() const { return dropped_; }
 
  private:
   Vec3 cellsOf(const Vec3& world) const;
   bool gather(const FragmentStream& stream, const Context& context);
   void fitCell(const FragmentStream& stream);
-  void accumulate(int slab, const GridDeposit& deposit);
+  void accumulate(std::size_t begin, std::size_t end, const GridDeposit& deposit);
   float face(long i, long j, long k) const;
 
   LightView view_;
@@ -53,7 +53,6 @@ class LightDensityMap {
   std::array<long, 3> first_{0, 0, 0};
   std::vector<GridPoint> points_;
   std::vector<float> values_;  ///< T on the exit faces, GridFrame::index order
-  std::vector<std::uint8_t> touched_;
   std::size_t dropped_ = 0;
 };
 

@@ -56,7 +56,7 @@ class GridDeposit {
   static constexpr int kSlabRows = 8;
   enum class Length { Whole, AcrossLast };
 
-  /// `points` and `offsets` as in StrandSet, kept by reference. Reads them once.
+  /// `points` and `offsets` as in StrandSet; read once.
   GridDeposit(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets, int log2Size,
               Length length, const Context& context = {});
 
@@ -65,18 +65,25 @@ class GridDeposit {
   /// Whether one turn of the addresses holds all cells that hair is in, without two sharing one.
   bool fits() const { return fits_; }
   int slabCount() const { return (1 << log2Size_) / kSlabRows; }
-  /// Rows j = first()[1] + slab · kSlabRows + 0 … kSlabRows − 1 (wrapped), all i and k, of `values` (n³,
-  /// GridFrame::index). Zeroes and sets touched[(k & mask) · n + (j & mask)] for rows that hair is in; other
-  /// rows of `values` are left as they were. Requires fits().
-  void fill(int slab, std::span<float> values, std::span<std::uint8_t> touched) const;
+  /// Floats that a slab takes, and flags: kSlabRows · n² and kSlabRows · n.
+  std::size_t slabCells() const { return std::size_t(kSlabRows) << (2 * log2Size_); }
+  std::size_t slabRows() const { return std::size_t(kSlabRows) << log2Size_; }
+  /// Rows j = slab · kSlabRows + 0 … kSlabRows − 1, counted from first() and not wrapped, into a slab of its
+  /// own: row (k, j) begins at (k · kSlabRows + j mod kSlabRows) · n. `touched`, zero when called, is set for
+  /// rows that hair is in; `cells` of others are left as they were. Apart from the grid, because a column of
+  /// it falls onto few lines of the cache. Requires fits().
+  void fill(int slab, std::span<float> cells, std::span<std::uint8_t> touched) const;
 
  private:
-  std::span<const GridPoint> points_;
+  /// Ends relative to first(), in the order of the points; copied, so that a slab reads them in one go.
+  struct Segment {
+    GridPoint a, b;
+  };
   int log2Size_ = 7;
   Length length_ = Length::Whole;
   std::array<long, 3> first_{0, 0, 0};
   bool fits_ = true;
-  std::vector<std::vector<std::vector<std::uint32_t>>> bins_;  ///< chunk, slab: first points of segments
+  std::vector<std::vector<std::vector<Segment>>> bins_;  ///< chunk, slab
 };
 
 struct DensityReport {
@@ -91,18 +98,19 @@ Result<DensityGrid> depositHairVolume(const StrandSet& strands, const GridFrame&
                                       const Context& context = {}, DensityReport* report = nullptr);
 
 /// Floor without a library call; |v| < 2⁶².
-inline long floorToLong(double v) {
+template <class Real>
+long floorToLong(Real v) {
   const long truncated = long(v);
-  return truncated - (v < double(truncated));
+  return truncated - (v < Real(truncated));
 }
 
 /// visit(i, j, k, from, to) for every cell that the segment a → b passes, in order; [from, to] is the part of
 /// it, in [0, 1]. Coordinates in cells, within ± 2³⁰.
-template <class Visit>
-void forEachCell(const Vec3& a, const Vec3& b, Visit&& visit) {
+template <class Real, class Visit>
+void forEachCell(const Eigen::Matrix<Real, 3, 1>& a, const Eigen::Matrix<Real, 3, 1>& b, Visit&& visit) {
   long cell[3], step[3];
   int left[3];
-  double next[3], stride[3];
+  Real next[3], stride[3];
   int count = 1;
   for (int d = 0; d < 3; ++d) {
     cell[d] = floorToLong(a[d]);
@@ -112,21 +120,21 @@ void forEachCell(const Vec3& a, const Vec3& b, Visit&& visit) {
     count += left[d];
     next[d] = 2, stride[d] = 0;
     if (left[d] == 0) continue;
-    const double perDelta = 1 / (b[d] - a[d]);
+    const Real perDelta = 1 / (b[d] - a[d]);
     stride[d] = std::abs(perDelta);
-    next[d] = (double(cell[d] + (steps > 0)) - a[d]) * perDelta;
+    next[d] = (Real(cell[d] + (steps > 0)) - a[d]) * perDelta;
   }
   // The number of faces is known beforehand, so rounding can displace a crossing but never lose one.
-  double from = 0;
+  Real from = 0;
   for (; count > 1; --count) {
     const int d = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : (next[1] <= next[2] ? 1 : 2);
-    const double to = std::clamp(next[d], from, 1.0);
+    const Real to = std::clamp(next[d], from, Real(1));
     visit(cell[0], cell[1], cell[2], from, to);
     from = to;
     cell[d] += step[d];
     next[d] = --left[d] > 0 ? next[d] + stride[d] : 2;
   }
-  visit(cell[0], cell[1], cell[2], from, 1.0);
+  visit(cell[0], cell[1], cell[2], from, Real(1));
 }
 
 }  // namespace coif
