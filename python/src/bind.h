@@ -27,6 +27,7 @@ void bindPlace(nb::module_& m);
 void bindStrands(nb::module_& m);
 void bindScene(nb::module_& m);
 void bindEditor(nb::module_& m);
+void bindLight(nb::module_& m);
 void bindPreview(nb::module_& m);
 
 /// A coif::Error on its way to Python, where it becomes coif.Error (bindBase registers the translator).

@@ -6,10 +6,7 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
-#include "bind_hairmesh.h"
-#include "bind_scalp.h"
-#include "bind_strands.h"
-#include "coif/io/safe_file.h"
+#include "bind_light.h"
 #include "coif/preview/session.h"
 
 namespace coif::python {
@@ -17,38 +14,6 @@ namespace coif::python {
 using namespace nb::literals;
 
 namespace {
-
-using Rgba = nb::ndarray<nb::numpy, std::uint8_t, nb::shape<-1, -1, 4>, nb::c_contig>;
-using Head = std::variant<ScalpModel, PolygonMesh>;
-
-Rgba arrayOf(Image image) {
-  auto* kept = new Image(std::move(image));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<Image*>(p); });
-  return Rgba(kept->rgba.data(), {std::size_t(kept->height), std::size_t(kept->width), 4}, owner);
-}
-
-void extend(Box& box, bool& any, const Vec3& p) {
-  if (!p.allFinite()) return;
-  box.lo = any ? Vec3(box.lo.cwiseMin(p)) : p;
-  box.hi = any ? Vec3(box.hi.cwiseMax(p)) : p;
-  any = true;
-}
-
-/// What a picture without a camera of its own shows: everything given.
-Box contentBox(const PreviewScene& scene) {
-  Box box;
-  bool any = false;
-  if (scene.strands) {
-    for (const Vec3f& p : scene.strands->points) extend(box, any, p.cast<double>());
-  }
-  if (scene.head) {
-    for (const Vec3& p : scene.head->positions) extend(box, any, p);
-  }
-  if (scene.hairMesh) {
-    for (const HairVertex& v : scene.hairMesh->vertices()) extend(box, any, v.position);
-  }
-  return box;
-}
 
 struct View {
   const Strands* strands = nullptr;
@@ -58,13 +23,10 @@ struct View {
   double azimuth = 30, elevation = 8;
 };
 
-Rgba renderWith(Preview& preview, const View& view, const PreviewOptions& options) {
+ByteRgba renderWith(Preview& preview, const View& view, const PreviewOptions& options) {
   PreviewScene scene;
   if (view.strands) scene.strands = &view.strands->set;
-  if (*view.head) {
-    const auto* scalp = std::get_if<ScalpModel>(&**view.head);
-    scene.head = scalp ? &scalp->surface->mesh() : &std::get<PolygonMesh>(**view.head);
-  }
+  scene.head = meshOf(*view.head);
   std::optional<HairMesh> mesh;
   if (view.hairMesh) scene.hairMesh = &mesh.emplace(view.hairMesh->mesh());
   if (!scene.strands && !scene.head && !scene.hairMesh) {
@@ -73,18 +35,19 @@ Rgba renderWith(Preview& preview, const View& view, const PreviewOptions& option
   const UpAxis up = scene.strands ? scene.strands->upAxis
                     : scene.head  ? scene.head->upAxis
                                   : view.hairMesh->upAxis;
-  scene.camera = view.camera ? *view.camera
-                             : frameBox(contentBox(scene), up, view.azimuth, view.elevation,
-                                        double(options.width) / double(std::max(options.height, 1)));
+  scene.camera = view.camera
+                     ? *view.camera
+                     : frameBox(contentBox(scene.strands, scene.head, scene.hairMesh), up, view.azimuth,
+                                view.elevation, double(options.width) / double(std::max(options.height, 1)));
   Picture picture =
       Run(0, nb::none())([&](const Context& context) { return preview.render(scene, options, context); });
   return arrayOf(std::move(picture.image));
 }
 
-Rgba render(const Strands* strands, const std::optional<Head>& head, const HairMeshModel* hairMesh,
-            std::tuple<int, int> size, double azimuth, double elevation, std::optional<Camera> camera,
-            const ArrayLike& hairColor, std::optional<ArrayLike> background, bool transparent, bool shadows,
-            bool lod, int subframes, Preview* preview) {
+ByteRgba render(const Strands* strands, const std::optional<Head>& head, const HairMeshModel* hairMesh,
+                std::tuple<int, int> size, double azimuth, double elevation, std::optional<Camera> camera,
+                const ArrayLike& hairColor, std::optional<ArrayLike> background, bool transparent,
+                bool shadows, bool lod, int subframes, Preview* preview) {
   PreviewOptions options;
   std::tie(options.width, options.height) = size;
   options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
@@ -99,11 +62,6 @@ Rgba render(const Strands* strands, const std::optional<Head>& head, const HairM
   if (preview) return renderWith(*preview, view, options);
   Preview own = take(Preview::create());
   return renderWith(own, view, options);
-}
-
-PolygonMesh const& meshOf(const Head& head) {
-  const auto* scalp = std::get_if<ScalpModel>(&head);
-  return scalp ? scalp->surface->mesh() : std::get<PolygonMesh>(head);
 }
 
 nb::dict uploadedOf(const PreviewUpload& bytes) {
@@ -123,8 +81,8 @@ struct Session {
   std::vector<StageReport> stages;
 };
 
-Rgba renderSession(Session& self, std::tuple<int, int> size, const ArrayLike& hairColor, bool transparent,
-                   bool shadows, bool lod, double strandFraction, int subframes) {
+ByteRgba renderSession(Session& self, std::tuple<int, int> size, const ArrayLike& hairColor, bool transparent,
+                       bool shadows, bool lod, double strandFraction, int subframes) {
   PreviewOptions options;
   std::tie(options.width, options.height) = size;
   options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
@@ -202,50 +160,9 @@ void bindSession(nb::module_& m) {
           "What the last picture did: (stage, ran, reused or skipped, why).");
 }
 
-void savePng(const std::filesystem::path& path, const ArrayLike& rgba) {
-  const auto pixels = toArray<std::uint64_t>(rgba, "rgba", {-1, -1, 4});
-  Image image{int(pixels.shape(1)), int(pixels.shape(0)), {}};
-  image.rgba.resize(pixels.size());
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (pixels.data()[i] > 255) throw nb::value_error("rgba: expected values from 0 to 255");
-    image.rgba[i] = std::uint8_t(pixels.data()[i]);
-  }
-  const auto bytes = take(encodePng(image));
-  SafeFile file = take(SafeFile::create(path));
-  file.write(bytes);
-  take(file.commit());
-}
-
-void bindCamera(nb::module_& m) {
-  nb::class_<Camera>(m, "Camera", "A pinhole camera in scene units.")
-      .def(
-          "__init__",
-          [](Camera* self, const ArrayLike& eye, const ArrayLike& target, const ArrayLike& up, double fov) {
-            new (self) Camera{toVec3(eye, "eye"), toVec3(target, "target"), toVec3(up, "up"), fov};
-          },
-          "eye"_a, "target"_a, "up"_a = nb::make_tuple(0, 1, 0), "fov"_a = 30.0,
-          "From `eye` towards `target` (3 floats each); fov: vertical angle of view in degrees.")
-      .def_static(
-          "frame",
-          [](const ArrayLike& lo, const ArrayLike& hi, double azimuth, double elevation, double aspect,
-             UpAxis upAxis) {
-            return frameBox({toVec3(lo, "lo"), toVec3(hi, "hi")}, upAxis, azimuth, elevation, aspect);
-          },
-          "lo"_a, "hi"_a, "azimuth"_a = 30.0, "elevation"_a = 8.0, "aspect"_a = 1.0, "up_axis"_a = UpAxis::Y,
-          "A camera that sees the whole box lo … hi. azimuth (degrees): 0 looks at the front, positive moves "
-          "to +x.")
-      .def_prop_ro(
-          "eye", [](const Camera& c) { return own(c.eye); }, nb::rv_policy::reference, "Where it stands.")
-      .def_prop_ro(
-          "target", [](const Camera& c) { return own(c.target); }, nb::rv_policy::reference,
-          "Where it looks.")
-      .def_ro("fov", &Camera::fovDeg, "Vertical angle of view in degrees.");
-}
-
 }  // namespace
 
 void bindPreview(nb::module_& m) {
-  bindCamera(m);
   const PreviewOptions defaults;
   nb::class_<Preview>(
       m, "Preview",
@@ -274,10 +191,6 @@ void bindPreview(nb::module_& m) {
       "samples each.\n"
       "preview: a Preview to use again. Needs no window and no GPU. Raises Error where OpenGL 4.5 is "
       "missing.");
-  m.def("save_png", &savePng, "path"_a, "rgba"_a,
-        "Writes a picture (height×width×4, 0 to 255) as a PNG file; the old file stays whole until the new "
-        "one is.\n\n"
-        "Raises ValueError for another shape, Error for a file that cannot be written.");
 }
 
 }  // namespace coif::python

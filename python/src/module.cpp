@@ -9,6 +9,7 @@ NB_MODULE(_coif, m) {
   bindHairMesh(m);
   bindPlace(m);
   bindStrands(m);
+  bindLight(m);
   bindScene(m);
   bindEditor(m);
 #ifdef COIF_WITH_PREVIEW

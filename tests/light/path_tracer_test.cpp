@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <memory>
 
 #include "path_scenes.h"
 
@@ -66,6 +67,27 @@ TEST_F(PathTracerTest, ALosslessClusterVanishesInAConstantEnvironment) {
     }
     EXPECT_LT(picture.confidence95.maxCoeff(), 0.01);
   }
+}
+
+// The same by sampling the light: evaluate(), pdf() and the weights between the two ways, none of which a
+// path that only escapes needs.
+TEST_F(PathTracerTest, ALosslessClusterVanishesInAPictureOfEvenLight) {
+  const StrandSet strands = cluster(300, 0.03f);
+  PathTraceScene scene;
+  scene.strands = &strands;
+  scene.camera = farCamera(0.6);
+  scene.lights = darkness();
+  const auto white = std::make_shared<FloatImage>(2, 1);
+  std::fill(white->rgba.begin(), white->rgba.end(), 1.0f);
+  scene.lights.surroundings = white;
+  scene.fibre = fibreOf(0);
+  PathTraceOptions options = small(16, 64);
+  options.showSurroundings = true;
+  const PathTracePicture picture = trace(scene, options);
+  EXPECT_GT(picture.shadowRays, picture.paths);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.mean[c], 1, 3 / 1.96 * picture.confidence95[c]);
+  EXPECT_GT(picture.confidence95[0], 0);
+  EXPECT_LT(picture.confidence95[0], 0.02);
 }
 
 // One vertical fibre, wider than the view.

@@ -77,8 +77,8 @@ struct PathTracePicture {
 /// Same scene, options and machine: same bytes for any number of threads. Radiance is linear RGB in the
 /// lights' unit. Errors: InvalidArgument (sizes, options, camera, lights that are not finite or negative,
 /// strands or ground that are malformed), Degenerate or Malformed (a head that fails validate), TooLarge,
-/// Cancelled, Unsupported (built without Embree). Cost: some 1 to 2 million rays a second and thread; fair
-/// hair takes some 20 rays a path, black hair 4.
+/// Cancelled, Unsupported (built without Embree). Cost: some 0.8 million rays a second and thread, most of it
+/// in the fibre function.
 Result<PathTracePicture> pathTrace(const PathTraceScene& scene, const PathTraceOptions& options = {},
                                    const Context& context = {});
 
