@@ -17,7 +17,7 @@ int orderOf(DynamicsMethod m) {
 constexpr double kOrderSlack = 0.15;
 
 double periodOf(DynamicsMethod method, double amplitude, double h) {
-  const ChainSet c = samples::straightChain(1, 1, Vec3(std::sin(amplitude), -std::cos(amplitude), 0));
+  const ChainSet c = straightChain(1, 1, Vec3(std::sin(amplitude), -std::cos(amplitude), 0));
   const auto solver = samples::solverFor(c, method);
   ChainState state = restState(c);
   double before = state.positions[1].x(), crossing = 0;
@@ -104,7 +104,7 @@ TEST(DoublePendulum, FollowsAnOrderEightReference) {
 }
 
 TEST(FreeFall, IsExactAndRigid) {
-  ChainSet c = samples::straightChain(6, 1, Vec3(1, 0, 0), 0.3, 5);
+  ChainSet c = straightChain(6, 1, Vec3(1, 0, 0), 0.3, 5);
   c.freeRoots[0] = 1;
   const double h = 1. / 50;
   const int steps = 100;
@@ -179,7 +179,7 @@ TEST(FreeRoot, KeepsMomentumAndWithTheMidpointRuleSpinAndEnergy) {
 }
 
 TEST(SpinningChain, StaysStraightAndKeepsItsSpeed) {
-  const ChainSet c = samples::straightChain(12, 1, Vec3(1, 0, 0), 0.1);
+  const ChainSet c = straightChain(12, 1, Vec3(1, 0, 0), 0.1);
   const auto solver = samples::solverFor(c, DynamicsMethod::EnergyKeeping, Vec3::Zero());
   ChainState state = restState(c);
   const double spin = 20, h = 1. / 240;
@@ -197,7 +197,7 @@ TEST(SpinningChain, StaysStraightAndKeepsItsSpeed) {
 
 // Small swings of a hanging chain: ω = j₀ₖ/2 √(g/L), shape J₀(j₀ₖ √(s/L)), s from the tip.
 double bessel(std::size_t links, double zero) {
-  ChainSet c = samples::straightChain(links, 1, Vec3(0, -1, 0));
+  ChainSet c = straightChain(links, 1, Vec3(0, -1, 0));
   const double ell = 1. / double(links);
   for (std::size_t i = 0; i <= links; ++i) c.masses[i] = i == links ? ell / 2 : ell;
   const auto solver = samples::solverFor(c, DynamicsMethod::EnergyKeeping);

@@ -94,7 +94,7 @@ TEST(Elastica, BendsFarUnderALoadAtItsTip) {
   EXPECT_NEAR(elasticaTip(2).y(), 0.4935, 1e-4);  // Bisshopp and Drucker 1945
   std::vector<double> errors;
   for (const std::size_t links : {10, 20, 40}) {
-    ChainSet c = samples::straightChain(links, 1, Vec3(1, 0, 0), 1e-9, double(links));
+    ChainSet c = straightChain(links, 1, Vec3(1, 0, 0), 1e-9, double(links));
     c.stiffness[1] *= 2;
     c.masses.back() = load / kG;
     ChainState state = restState(c);
@@ -137,7 +137,7 @@ TEST(Catenary, HangsBetweenTwoPoints) {
   const double sag = low * (std::cosh(span / (2 * low)) - 1);
   std::vector<double> errors;
   for (const std::size_t links : {10, 20, 40}) {
-    ChainSet c = samples::straightChain(links, 1, Vec3(1, 0, 0), 1. / double(links));
+    ChainSet c = straightChain(links, 1, Vec3(1, 0, 0), 1. / double(links));
     c.masses.back() /= 2;
     HoldNode hold(std::uint32_t(links), Vec3(span, 0, 0), 1e6);  // gives way by 1e-5 under the chain's weight
     ForceField* fields[] = {&hold};
@@ -254,7 +254,7 @@ TEST(Direct, OneStepEqualsADenseSolveOnChainsAndTrees) {
   const CounterRandom random(11);
   for (const bool branched : {false, true}) {
     for (const double kappa : {0.0, 0.3, 40.0}) {
-      ChainSet c = samples::straightChain(8, 1, Vec3(1, 0.3, 0), 0.2, kappa);
+      ChainSet c = straightChain(8, 1, Vec3(1, 0.3, 0), 0.2, kappa);
       if (branched) c.parents = {kNone, 0, 1, 2, 3, 2, 5, 1, 7};  // two splits
       ChainState state = restState(c);
       for (std::uint32_t i = 1; i < c.nodeCount(); ++i) {

@@ -43,7 +43,7 @@ struct SolverOptions {
   int iterations = 20;               ///< VanOverveld, Xpbd: sweeps a step
   /// Newton stops once no node moves further than this fraction of the mean link. Say what a tenth of a pixel
   /// is to stop earlier; 0: to rounding.
-  double tolerance = 1e-9;
+  double tolerance = 1e-7;
   bool floatLanes = false;  ///< 16 chains at once in single precision, for chains up to ~100 links
   /// Chains at rest are skipped until their root, a field's force or the gravity changes: a chain sleeps
   /// after sleepSteps steps in which no node moved faster than sleepSpeed. 0: never.
