@@ -17,7 +17,7 @@ done
 cp build/pictures/*.png docs/pictures/
 say "path traced"
 PYTHONPATH=$BUILD/python "$VENV/bin/python" scripts/picture_path_traced.py build/pictures/bob.coif build/pictures/head.obj \
-  -o docs/pictures/path-traced.png --size 150 --samples 32 --strands 40000
+  -o docs/pictures/path-traced.png --size 160 --samples 160 --strands 60000
 for picture in docs/pictures/*.png; do
   bytes=$(stat -c %s "$picture")
   [ "$bytes" -le 204800 ] || { say "$picture has $bytes bytes: more than 200 KB; run with a smaller SIZE"; exit 1; }
