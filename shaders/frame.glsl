@@ -1,7 +1,6 @@
 // What every pass of a picture knows. Mirrors FrameData in src/preview/frame_data.h; std140, vec4s only.
 layout(std140, binding = 0) uniform Frame {
   mat4 clipFromWorld;       // with the sub-frame's jitter
-  mat4 shadowFromWorld;     // key light: xy in [0, 1], z = distance along the light over shadowInfo.y
   vec4 eye;                 // xyz; w = world size of a pixel at distance 1
   vec4 viewForward;         // xyz; w = near distance
   vec4 viewUp;              // xyz
@@ -12,10 +11,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 groundColor;
   vec4 volumeLo;            // xyz; w = cell
   vec4 volumeScale;         // xyz = 1 / extent
-  vec4 shadowInfo;          // map size, depth range (world), texel (world), bias (world)
-  vec4 shadowLayers;        // far ends of the layers behind the first hair, world
-  vec4 shadowRight;         // xyz of the map's u axis; w = opacity of a hair
-  vec4 shadowUp;
+  vec4 shadowInfo;          // 1 = filtered look-ups, depth range (world), texel (world), bias (world)
   vec4 hairColor;           // w = 1: the strands carry colours
   vec4 headColor;
   vec4 backgroundTop;

@@ -12,12 +12,14 @@ void main() {
   if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;
   float u = 6.2831853 * random3(uint(gl_FragCoord.x), uint(gl_FragCoord.y), uint(viewport.z));
   vec4 hair = volumeAt(worldPosition + n * volumeLo.w);
-  vec2 key = vec2(0);
+  float key = 0.0;
   for (int k = 0; k < 4; ++k) {
     float a = u + 1.5707963 * float(k);
-    key += 0.25 * keyVisibility(worldPosition + n * shadowInfo.w, (1.0 + float(k)) * vec2(cos(a), sin(a)));
+    vec2 offset = (1.0 + float(k)) * vec2(cos(a), sin(a));
+    vec3 above = worldPosition + n * shadowInfo.w;
+    key += 0.25 * keyPastHead(above, offset) * keyTransmittance(keyTaps(above, offset), vec3(1)).x;
   }
-  vec3 transmitted = vec3(key.y * exp(-0.8 * key.x), exp(-0.8 * hair.y), exp(-0.8 * hair.z));
+  vec3 transmitted = vec3(key, exp(-0.8 * hair.y), exp(-0.8 * hair.z));
   float up = 0.5 + 0.5 * dot(n, viewUp.xyz);
   vec3 albedo = headColor.rgb;
   vec3 sum = mix(groundColor.rgb, skyColor.rgb, up) * albedo * hair.w;

@@ -12,7 +12,7 @@ out float coverage;            // width over the ribbon's width
 flat out uint seed;
 
 // A hair swallows less of the light that it lets through, so fair hair shades itself less.
-vec3 throughHair(float depth, vec3 c) { return exp(-depth * shadowRight.w * (1.0 - 0.72 * pow(c, vec3(0.38)))); }
+vec3 extinction(vec3 c) { return 1.0 - 0.72 * pow(c, vec3(0.38)); }
 
 void main() {
   StrandPoint p = strandPointAt(strandVertex());
@@ -42,11 +42,12 @@ void main() {
 #ifdef SHADOWS
   uint frame = uint(viewport.z);
   float a = 6.2831853 * random3(seed, uint(strandVertex()), frame), r = 1.6 * sqrt(random3(seed, frame, 3u));
-  vec2 key = keyVisibility(worldPosition, r * vec2(cos(a), sin(a)));
+  vec2 offset = r * vec2(cos(a), sin(a));
   vec4 volume = volumeAt(worldPosition);
-  reach[0] = key.y * throughHair(key.x, baseColor);
-  reach[1] = throughHair(volume.y, baseColor);
-  reach[2] = throughHair(volume.z, baseColor);
+  vec3 strength = extinction(baseColor);
+  reach[0] = keyPastHead(worldPosition, offset) * keyTransmittance(keyTaps(worldPosition, offset), strength);
+  reach[1] = exp(-0.75 * volume.y * strength);
+  reach[2] = exp(-0.75 * volume.z * strength);
   sky = volume.w;
 #endif
 

@@ -1,8 +1,7 @@
 // How much light reaches a point through the hair.
+#include "hair_map_query.glsl"
 layout(binding = 0) uniform sampler3D lightVolume;     // optical depth to key, fill, rim; open sky in w
 layout(binding = 1) uniform sampler2D headDepthMap;    // first head surface from the key light
-layout(binding = 2) uniform sampler2D hairFrontMap;    // first hair from the key light
-layout(binding = 3) uniform sampler2D hairLayerMap;    // optical depth to the far end of each layer
 
 vec4 volumeAt(vec3 p) {
   vec3 c = (p - volumeLo.xyz) * volumeScale.xyz;
@@ -12,34 +11,35 @@ vec4 volumeAt(vec3 p) {
   return mix(inside, vec4(0, 0, 0, 1), away);
 }
 
-// Optical depth of the hair between the key light and p at one texel (deep opacity maps, Yuksel & Keyser 2008).
-float layeredDepth(ivec2 texel, float z) {
-  float front = texelFetch(hairFrontMap, texel, 0).r;
-  if (front >= 1.0) return 0.0;
-  float d = (z - front) * shadowInfo.y;
-  if (d <= 0.0) return 0.0;
-  vec4 g = texelFetch(hairLayerMap, texel, 0);
-  vec4 ends = shadowLayers;
-  if (d < ends.x) return g.x * d / ends.x;
-  if (d < ends.y) return mix(g.x, g.y, (d - ends.x) / (ends.y - ends.x));
-  if (d < ends.z) return mix(g.y, g.z, (d - ends.y) / (ends.z - ends.y));
-  return mix(g.z, g.w, min((d - ends.z) / (ends.w - ends.z), 1.0));
+// Hair between the key light and p, at a place moved by texels. Half a texel towards the light, so that a hair that
+// leans towards it does not shadow itself.
+Taps keyTaps(vec3 p, vec2 offsetTexels) {
+#ifdef LIGHT_MAP
+  return Taps(vec4(volumeAt(p).x, 0, 0, 0), vec4(1, 0, 0, 0));
+#else
+  return mapTaps(p + lightDirection[0].xyz * (0.5 * mapInfo.z), offsetTexels, shadowInfo.x > 0.5);
+#endif
 }
 
-// x: optical depth of hair, y: 1 lit, 0 behind the head; one jittered bilinear look-up.
-vec2 keyVisibility(vec3 p, vec2 offsetTexels) {
-  vec3 s = (shadowFromWorld * vec4(p, 1)).xyz;
-  vec2 t = s.xy * shadowInfo.x - 0.5 + offsetTexels;
-  if (any(lessThan(t, vec2(0))) || any(greaterThan(t, vec2(shadowInfo.x - 2.0)))) return vec2(0, 1);
+// 1 lit, 0 behind the head.
+float keyPastHead(vec3 p, vec2 offsetTexels) {
+  vec4 s = mapProject(p);
+  vec2 t = s.xy - 0.5 + offsetTexels;
+  if (!(s.w > 0.0) || any(lessThan(t, vec2(0))) || any(greaterThan(t, vec2(mapInfo.x - 2.0)))) return 1.0;
   ivec2 base = ivec2(floor(t));
   vec2 f = t - vec2(base);
-  float bias = shadowInfo.w / shadowInfo.y;
-  vec2 sum = vec2(0);
+  float sum = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 o = ivec2(k & 1, k >> 1);
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
-    float lit = texelFetch(headDepthMap, base + o, 0).r + bias >= s.z ? 1.0 : 0.0;
-    sum += w * vec2(layeredDepth(base + o, s.z), lit);
+    sum += w * (texelFetch(headDepthMap, base + o, 0).r * shadowInfo.y + shadowInfo.w >= s.z ? 1.0 : 0.0);
   }
+  return sum;
+}
+
+// The part of the key light that is left, for extinction `strength` a channel of what hair has.
+vec3 keyTransmittance(Taps taps, vec3 strength) {
+  vec3 sum = vec3(0);
+  for (int k = 0; k < 4; ++k) sum += taps.weights[k] * exp(-taps.depths[k] * strength);
   return sum;
 }

@@ -91,13 +91,9 @@ FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions
 }
 
 void copyShadowFields(const FrameData& from, FrameData& to) {
-  to.shadowFromWorld = from.shadowFromWorld;
   to.volumeLo = from.volumeLo;
   to.volumeScale = from.volumeScale;
   to.shadowInfo = from.shadowInfo;
-  to.shadowLayers = from.shadowLayers;
-  to.shadowRight = from.shadowRight;
-  to.shadowUp = from.shadowUp;
 }
 
 }  // namespace coif::preview

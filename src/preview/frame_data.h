@@ -13,15 +13,15 @@ using Mat4f = Eigen::Matrix4f;
 
 /// Field by field the std140 layout of the block (vec4s and column-major mat4s only).
 struct FrameData {
-  Mat4f clipFromWorld, shadowFromWorld;
+  Mat4f clipFromWorld;
   Vec4f eye, viewForward, viewUp, viewport;
   Vec4f lightDirection[3], lightColor[3];
   Vec4f skyColor, groundColor;
   Vec4f volumeLo, volumeScale;
-  Vec4f shadowInfo, shadowLayers, shadowRight, shadowUp;
+  Vec4f shadowInfo;
   Vec4f hairColor, headColor, backgroundTop, backgroundBottom;
 };
-static_assert(sizeof(FrameData) == 16 * (8 + 4 + 6 + 2 + 2 + 4 + 4), "as std140 lays it out");
+static_assert(sizeof(FrameData) == 16 * (4 + 4 + 6 + 2 + 2 + 1 + 4), "as std140 lays it out");
 
 /// The camera's orthonormal frame and what a pixel measures.
 struct View {

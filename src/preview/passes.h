@@ -6,6 +6,7 @@
 
 #include "preview/frame_data.h"
 #include "preview/gl_objects.h"
+#include "preview/hair_map.h"
 #include "preview/light_volume.h"
 #include "preview/program.h"
 #include "preview/synthesis.h"
@@ -28,24 +29,36 @@ class HeadBuffers {
   GLsizei count_ = 0;
 };
 
-/// Fills the fields of `frame` that place the key light's map over the scene.
-void placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame);
+/// Places the key light's map over the scene and fills the fields of `frame` that say how it lies.
+LightView placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame);
 
-/// Visibility from the key light (deep opacity maps of four layers over the head's depth map) and the light
-/// volumes. Texture units 0 … 3 as shaders/visibility.glsl names them.
+/// s of deep opacity layers, from a few strands on a small map.
+double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const VisibilityOptions& options,
+                       const Context& context);
+
+/// Visibility from the key light (the hair's map beside the head's depth map) and the light volumes. Texture
+/// units 0 … 4 as shaders/visibility.glsl names them.
 class ShadowPass {
  public:
-  /// Fills the shadow and volume fields of `frame`; a null geometry or head is left out.
-  ShadowPass(const Programs& programs, const Box& scene, const CoarseStrands* strands,
-             const StrandBuffers* buffers, const PolygonMesh* head, const HeadBuffers* headBuffers,
-             FrameData& frame, Buffer& frameBuffer, int mapSize, const Context& context);
+  /// Fills the volume fields of `frame`, which must be on the GPU already; null strands or head are left out.
+  static Result<ShadowPass> make(const Programs& programs, const LightView& view,
+                                 const VisibilityOptions& options, const CoarseStrands* strands,
+                                 const StrandBuffers* lines, const PolygonMesh* head,
+                                 const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
   void bindForHair() const { bind(withHead_); }
   void bindForHead() const { bind(hairOnly_); }
+  const HairMap& map() const { return map_; }
 
  private:
   void bind(const Texture& volume) const;
-  Texture headDepth_, hairFront_, hairLayers_, hairOnly_, withHead_;
+  Texture headDepth_, hairOnly_, withHead_;
+  HairMap map_;
 };
+
+/// Every program and permutation that the room can ask for; a test compiles them all.
+std::vector<ProgramSource> allPermutations();
+ProgramSource headProgram(const VisibilityOptions& visibility);
+ProgramSource strandProgram(const VisibilityOptions& visibility, bool shadows, Topology topology);
 
 /// Edges and faces of the hair mesh, one colour a layer.
 class OverlayPass {

@@ -60,19 +60,13 @@ Result<GLuint> compile(GLenum stage, const std::string& name, std::span<const st
 std::span<const ProgramSource> allPrograms() {
   static const std::vector<ProgramSource> programs = {
       {"fullscreen.vert", "backdrop.frag", {}},
-      {"head.vert", "head.frag", {}},
-      {"strand.vert", "strand.frag", {"SHADOWS"}},
-      {"strand.vert", "strand.frag", {}},
       {"shadow_head.vert", "shadow_depth.frag", {}},
-      {"shadow_strand.vert", "shadow_depth.frag", {}},
-      {"shadow_strand.vert", "shadow_layers.frag", {}},
+      {"map_range.comp", "", {}},
+      {"map_clusters.comp", "", {}},
+      {"lists_sort.comp", "", {}},
       {"overlay.vert", "overlay.frag", {}},
       {"fullscreen.vert", "resolve.frag", {}},
       {"fullscreen.vert", "finish.frag", {}},
-      {"strand.vert", "strand.frag", {"SHADOWS", "LINES"}},
-      {"strand.vert", "strand.frag", {"LINES"}},
-      {"shadow_strand.vert", "shadow_depth.frag", {"LINES"}},
-      {"shadow_strand.vert", "shadow_layers.frag", {"LINES"}},
       {"strand_columns.comp", "", {}},
       {"strand_points.comp", "", {}},
       {"strand_points.comp", "", {"IMPORTED"}},
@@ -113,13 +107,22 @@ Result<Program> buildProgram(const ProgramSource& source) {
 Programs::Programs() : programs_(allPrograms().size()) {}
 
 GLuint Programs::operator[](ProgramId id) const {
-  Program& program = programs_[std::size_t(id)];
+  return built(programs_[std::size_t(id)], allPrograms()[std::size_t(id)]);
+}
+
+GLuint Programs::operator()(const ProgramSource& source) const {
+  std::string key = source.vertex + '|' + source.fragment;
+  for (const std::string& define : source.defines) key += '|' + define;
+  return built(permutations_[key], source);
+}
+
+GLuint Programs::built(Program& program, const ProgramSource& source) const {
   if (program.name() == 0 && error_.ok()) {
-    Result<Program> built = buildProgram(allPrograms()[std::size_t(id)]);
-    if (built.ok()) {
-      program = *std::move(built);
+    Result<Program> result = buildProgram(source);
+    if (result.ok()) {
+      program = *std::move(result);
     } else {
-      error_ = built.error();
+      error_ = result.error();
     }
   }
   return program.name();

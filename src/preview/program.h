@@ -1,6 +1,7 @@
 // GLSL programs from the files in shaders/.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,19 +20,13 @@ struct ProgramSource {
 /// Every program and permutation that the room uses; passes name theirs by index in this list.
 enum class ProgramId {
   Backdrop,
-  Head,
-  Strands,
-  StrandsPlain,
   ShadowHead,
-  ShadowFront,
-  ShadowLayers,
+  MapRange,
+  MapClusters,
+  SortMapLists,
   Overlay,
   Resolve,
   Finish,
-  StrandsLines,
-  StrandsPlainLines,
-  ShadowFrontLines,
-  ShadowLayersLines,
   StrandColumns,
   StrandPoints,
   StrandPointsImported,
@@ -50,10 +45,15 @@ class Programs {
   Programs();
   /// 0 where it does not compile; error() then says why.
   GLuint operator[](ProgramId id) const;
+  /// A permutation that has no id of its own.
+  GLuint operator()(const ProgramSource& source) const;
   const Status& error() const { return error_; }
 
  private:
+  GLuint built(Program& program, const ProgramSource& source) const;
+
   mutable std::vector<Program> programs_;
+  mutable std::map<std::string, Program> permutations_;  ///< by files and macros
   mutable Status error_;
 };
 

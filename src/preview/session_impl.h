@@ -30,6 +30,7 @@ struct PreviewSession::Impl {
   std::unique_ptr<ShadowPass> shadows;
   FrameData shadowFrame;  ///< of the picture that `shadows` was made for
   bool shadowsHaveHair = false;
+  VisibilityOptions shadowOptions;
   DetailOptions shadowDetail;  ///< of the strands in the maps
   std::unique_ptr<FrameTargets> targets;
   int targetWidth = 0, targetHeight = 0;
@@ -45,8 +46,8 @@ struct PreviewSession::Impl {
                       const Context& context);
   void makeShadowStrands(const PreviewOptions& options, const FrameData& frame, Picture& picture,
                          const Context& context);
-  void makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer, Picture& picture,
-                   const Context& context);
+  Status makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer, Picture& picture,
+                     const Context& context);
   Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
               Picture& picture, const Context& context);
   void drawSubframe(const PreviewOptions& options) const;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "preview/session_impl.h"
 
@@ -19,6 +20,7 @@ Status checkOptions(const PreviewOptions& options) {
   if (!(options.strandFraction >= 0 && options.strandFraction <= 1)) {
     return makeError(ErrorCode::InvalidArgument, "the fraction of strands must lie between 0 and 1");
   }
+  if (options.shadows) COIF_TRY(checkMapOptions(options.visibility));
   for (const Vec3f* color :
        {&options.hairColor, &options.headColor, &options.backgroundTop, &options.backgroundBottom}) {
     if (!color->allFinite() || color->minCoeff() < 0) {
@@ -96,6 +98,13 @@ bool sameLight(const FrameData& a, const FrameData& b) {
   return a.viewUp == b.viewUp;
 }
 
+bool sameMap(const VisibilityOptions& a, const VisibilityOptions& b) {
+  const auto key = [](const VisibilityOptions& o) {
+    return std::tuple(o.method, o.slices, o.layers, o.sizes, o.past, o.layerSize, o.filter);
+  };
+  return key(a) == key(b);
+}
+
 std::string strandsText(const DetailPlan& plan) {
   return std::to_string(plan.strands) + " strands, " + std::to_string(plan.points) + " points";
 }
@@ -144,7 +153,7 @@ namespace {
 /// Brings strands to a plan with as little work as may be.
 void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan, const char* name, bool keep,
             bool measure, const HairModel& model, const HairBuffers& hair, const Programs& programs,
-            Picture& picture) {
+            Topology topology, Picture& picture) {
   const bool same = strands != nullptr && strands->plan() == plan;
   if (keep && same && !old) {
     report(picture, name, StageState::Reused, "the same strands with the same points: " + strandsText(plan));
@@ -162,7 +171,6 @@ void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan,
   } else {
     picture.uploaded.plan += plan.bytes();
     strands.reset();  // first, so that both need not fit
-    const Topology topology = plan.lines ? Topology::Lines : Topology::Ribbons;
     strands = std::make_unique<StrandBuffers>(model, hair, programs, std::move(plan), topology);
   }
   stage.bytes = strands->bytes();
@@ -183,8 +191,9 @@ void PreviewSession::Impl::makeEyeStrands(const PreviewOptions& options, const V
     picture.notes.push_back(std::to_string(picture.strandsDropped) +
                             " strands were left out: values not finite or fewer than two points");
   }
+  const Topology topology = plan.lines ? Topology::Lines : Topology::Ribbons;
   follow(eyeStrands, eyeOld, std::move(plan), "strands for the eye", options.keep, options.measure,
-         hair->model, *hairBuffers, *device->programs, picture);
+         hair->model, *hairBuffers, *device->programs, topology, picture);
 }
 
 void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, const FrameData& frame,
@@ -194,25 +203,28 @@ void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, cons
   DetailPlan plan = makePlan(
       hair->model, shadowDetail, [texel](const Vec3&) { return texel; }, context);
   follow(shadowStrands, shadowOld, std::move(plan), "strands for the maps", options.keep, options.measure,
-         hair->model, *hairBuffers, *device->programs, picture);
+         hair->model, *hairBuffers, *device->programs, Topology::Segments, picture);
 }
 
-void PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer,
-                                       Picture& picture, const Context& context) {
+Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer,
+                                         Picture& picture, const Context& context) {
   const bool withHair = hair && options.shadows;
-  const bool moved =
-      withHair && (shadowStrands == nullptr || shadowOld || shadowDetail != mapDetailOf(options, *device));
+  const VisibilityMethod method = options.visibility.method;
+  const bool needsLines = method != VisibilityMethod::None && method != VisibilityMethod::LightMap;
+  const bool moved = withHair && ((shadowStrands == nullptr && needsLines) || shadowOld ||
+                                  shadowDetail != mapDetailOf(options, *device));
   const bool light = sameLight(frame, shadowFrame);
-  if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair) {
+  if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair &&
+      sameMap(options.visibility, shadowOptions)) {
     copyShadowFields(shadowFrame, frame);
     glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
     report(picture, "shadow maps", withHair ? StageState::Reused : StageState::Skipped,
            withHair ? "light and hair did not move" : "no hair, or shadows are off");
-    return;
+    return {};
   }
   const int mapSize = device->gl->software() ? kSoftwareMap : kHardwareMap;
-  placeShadowMap(box(), hair ? hair->model.coarse.box : box(), mapSize, frame);
-  if (withHair) makeShadowStrands(options, frame, picture, context);
+  const LightView lightView = placeShadowMap(box(), hair ? hair->model.coarse.box : box(), mapSize, frame);
+  if (withHair && needsLines) makeShadowStrands(options, frame, picture, context);
   StageReport& stage = report(picture, "shadow maps", withHair ? StageState::Ran : StageState::Skipped,
                               !withHair            ? "no hair, or shadows are off"
                               : shadows == nullptr ? "first picture"
@@ -221,12 +233,18 @@ void PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData&
                                                    : "asked for");
   const StageTimer timer(stage, options.measure);
   shadows.reset();
-  shadows = std::make_unique<ShadowPass>(*device->programs, box(), withHair ? &hair->model.coarse : nullptr,
-                                         withHair ? shadowStrands.get() : nullptr, head.get(),
-                                         options.shadows ? headBuffers.get() : nullptr, frame, frameBuffer,
-                                         mapSize, context);
+  glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+  COIF_ASSIGN(ShadowPass made,
+              ShadowPass::make(*device->programs, lightView, options.visibility,
+                               withHair ? &hair->model.coarse : nullptr,
+                               withHair && needsLines ? shadowStrands.get() : nullptr, head.get(),
+                               options.shadows ? headBuffers.get() : nullptr, frame, context));
+  shadows = std::make_unique<ShadowPass>(std::move(made));
+  stage.bytes = shadows->map().bytes();
   shadowFrame = frame;
   shadowsHaveHair = withHair;
+  shadowOptions = options.visibility;
+  return {};
 }
 
 Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, const Context& context) {
@@ -244,7 +262,7 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
   frame.hairColor.w() = hair && hair->model.colored ? 1.0f : 0.0f;
   Buffer frameBuffer = makeBuffer(std::span<const FrameData>(&frame, 1), GL_DYNAMIC_STORAGE_BIT);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
-  makeShadows(options, frame, frameBuffer, picture, context);
+  COIF_TRY(makeShadows(options, frame, frameBuffer, picture, context));
   COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
   COIF_TRY(device->programs->error());
   for (const std::string& warning : device->gl->log().warnings)
@@ -268,15 +286,13 @@ void PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
   glEnable(GL_DEPTH_TEST);
   if (headBuffers != nullptr) {
     shadows->bindForHead();
-    glUseProgram(programs[ProgramId::Head]);
+    glUseProgram(programs(headProgram(shadows->map().options())));
     headBuffers->draw();
   }
   if (hair) {
     shadows->bindForHair();
-    const bool lines = eyeStrands->topology() == Topology::Lines;
     glUseProgram(
-        programs[options.shadows ? (lines ? ProgramId::StrandsLines : ProgramId::Strands)
-                                 : (lines ? ProgramId::StrandsPlainLines : ProgramId::StrandsPlain)]);
+        programs(strandProgram(shadows->map().options(), options.shadows, eyeStrands->topology())));
     eyeStrands->draw();
   }
   if (overlayPass != nullptr) overlayPass->draw(programs);

@@ -7,10 +7,8 @@
 namespace coif::preview {
 namespace {
 
-// Ends of the layers behind the first hair, as parts of the hair's diagonal: Fibonacci-like, thin in front.
-constexpr double kLayerEnds[] = {0.012, 0.035, 0.08, 0.18};
-constexpr double kBias = 0.012;        // of the diagonal: roots lie on the head's surface
-constexpr float kHairOpacity = 0.75f;  // how much of the light that meets a black hair is lost
+constexpr double kBias = 0.012;  // of the diagonal: roots lie on the head's surface
+constexpr int kLayerMap = 128;   // texels a side of the map that layer sizes are chosen on
 
 Texture uploadVolume(const LightVolume& volume) {
   GLuint name = 0;
@@ -26,46 +24,59 @@ Texture uploadVolume(const LightVolume& volume) {
   return Texture(name);
 }
 
-Texture clearedDepthMap(int size) {
+// The first surface of the head from the light, as a part of the map's range of depth.
+Texture drawHead(const Programs& programs, const HeadBuffers* head, int size) {
   Texture map = makeTexture2d(GL_DEPTH_COMPONENT32F, size, size);
   const float farthest = 1;
   glClearTexImage(map.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, &farthest);
+  if (head == nullptr) return map;
+  const Framebuffer target = makeFramebuffer();
+  glNamedFramebufferTexture(target.name(), GL_DEPTH_ATTACHMENT, map.name(), 0);
+  glNamedFramebufferDrawBuffer(target.name(), GL_NONE);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+  glViewport(0, 0, size, size);
+  glEnable(GL_DEPTH_TEST);
+  glUseProgram(programs[ProgramId::ShadowHead]);
+  head->draw();
+  glDisable(GL_DEPTH_TEST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
   return map;
 }
 
-Framebuffer depthTarget(const Texture& depth) {
-  Framebuffer target = makeFramebuffer();
-  glNamedFramebufferTexture(target.name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
-  glNamedFramebufferDrawBuffer(target.name(), GL_NONE);
-  return target;
+StrandSet asStrands(const CoarseStrands& coarse) {
+  StrandSet strands;
+  for (const CoarseStrands::Point& p : coarse.points) {
+    strands.points.push_back(p.position);
+    strands.widths.push_back(p.width);
+  }
+  strands.offsets.assign(coarse.starts.begin(), coarse.starts.end());
+  return strands;
 }
 
 }  // namespace
 
-// The map covers the scene's bounding sphere.
-void placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame) {
-  const Vec3 toLight = frame.lightDirection[0].head<3>().cast<double>().normalized();
-  const Vec3 right = toLight.unitOrthogonal(), up = toLight.cross(right);
-  const Vec3 centre = 0.5 * (scene.lo + scene.hi);
-  const double radius = std::max({0.51 * scene.diagonal(), 1e-6 * centre.norm(), 1e-9});
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.row(0).head<3>() = right / (2 * radius);
-  m.row(1).head<3>() = up / (2 * radius);
-  m.row(2).head<3>() = -toLight / (2 * radius);
-  m.block<3, 1>(0, 3) = Vec3::Constant(0.5) - m.topLeftCorner<3, 3>() * centre;
-  frame.shadowFromWorld = m.cast<float>();
-  const double size = std::max(hair.diagonal(), 1e-3 * radius);
-  frame.shadowInfo =
-      Vec4f(float(mapSize), float(2 * radius), float(2 * radius / mapSize), float(kBias * size));
-  for (int k = 0; k < 4; ++k) frame.shadowLayers[k] = float(kLayerEnds[k] * size);
-  frame.shadowRight = Vec4f(float(right.x()), float(right.y()), float(right.z()), kHairOpacity);
-  frame.shadowUp = Vec4f(float(up.x()), float(up.y()), float(up.z()), 0);
+LightView placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame) {
+  const LightView view = distantLightView(frame.lightDirection[0].head<3>().cast<double>(), scene, mapSize);
+  const double size = std::max(hair.diagonal(), 1e-3 * view.depthRange);
+  frame.shadowInfo = Vec4f(0, float(view.depthRange), float(view.texel), float(kBias * size));
+  return view;
 }
 
-ShadowPass::ShadowPass(const Programs& programs, const Box& scene, const CoarseStrands* strands,
-                       const StrandBuffers* buffers, const PolygonMesh* head, const HeadBuffers* headBuffers,
-                       FrameData& frame, Buffer& frameBuffer, int mapSize, const Context& context) {
-  placeShadowMap(scene, strands != nullptr ? strands->box : scene, mapSize, frame);
+double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const VisibilityOptions& options,
+                       const Context& context) {
+  const StrandSet strands = asStrands(hair);
+  const LightView small = distantLightView(-view.forward, hair.box, kLayerMap);
+  const auto stream = FragmentStream::make(strands, small, {}, context);
+  if (!stream.ok()) return 0.02 * std::max(hair.box.diagonal(), 1e-12);
+  return chooseLayerSize(*stream, options.sizes, options.layers, options.past, context).size;
+}
+
+Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& view,
+                                    const VisibilityOptions& options, const CoarseStrands* strands,
+                                    const StrandBuffers* lines, const PolygonMesh* head,
+                                    const HeadBuffers* headBuffers, FrameData& frame,
+                                    const Context& context) {
+  ShadowPass pass;
   LightVolumes volumes;
   if (strands != nullptr) {
     const Vec3 lights[3] = {frame.lightDirection[0].head<3>().cast<double>(),
@@ -76,49 +87,24 @@ ShadowPass::ShadowPass(const Programs& programs, const Box& scene, const CoarseS
   const LightVolume& volume = volumes.hairOnly;
   frame.volumeLo << volume.lo.cast<float>(), float(volume.cell);
   frame.volumeScale << volume.extent().cwiseInverse().cast<float>(), 0.0f;
-  hairOnly_ = uploadVolume(volumes.hairOnly);
-  withHead_ = uploadVolume(volumes.withHead);
-  glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-
-  headDepth_ = clearedDepthMap(mapSize);
-  hairFront_ = clearedDepthMap(mapSize);
-  hairLayers_ = makeTexture2d(GL_RGBA32F, mapSize, mapSize);
-  glClearTexImage(hairLayers_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
-  glViewport(0, 0, mapSize, mapSize);
-  glEnable(GL_DEPTH_TEST);
-  if (headBuffers != nullptr) {
-    const Framebuffer target = depthTarget(headDepth_);
-    glBindFramebuffer(GL_FRAMEBUFFER, target.name());
-    glUseProgram(programs[ProgramId::ShadowHead]);
-    headBuffers->draw();
+  frame.shadowInfo.x() = options.filter ? 1.0f : 0.0f;
+  pass.hairOnly_ = uploadVolume(volumes.hairOnly);
+  pass.withHead_ = uploadVolume(volumes.withHead);
+  VisibilityOptions chosen = options;
+  if (strands == nullptr) chosen.method = VisibilityMethod::None;
+  if (chosen.method == VisibilityMethod::DeepOpacity && !(chosen.layerSize > 0)) {
+    chosen.layerSize = chooseLayerSize(*strands, view, chosen, context);
   }
-  if (buffers != nullptr) {
-    const Framebuffer front = depthTarget(hairFront_);
-    glBindFramebuffer(GL_FRAMEBUFFER, front.name());
-    glUseProgram(programs[buffers->topology() == Topology::Lines ? ProgramId::ShadowFrontLines
-                                                                 : ProgramId::ShadowFront]);
-    buffers->draw();
-    glDisable(GL_DEPTH_TEST);
-    const Framebuffer layers = makeFramebuffer();
-    glNamedFramebufferTexture(layers.name(), GL_COLOR_ATTACHMENT0, hairLayers_.name(), 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, layers.name());
-    glBindTextureUnit(2, hairFront_.name());
-    glUseProgram(programs[buffers->topology() == Topology::Lines ? ProgramId::ShadowLayersLines
-                                                                 : ProgramId::ShadowLayers]);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    buffers->draw();
-    glDisable(GL_BLEND);
-  }
-  glDisable(GL_DEPTH_TEST);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  COIF_ASSIGN(pass.map_, HairMap::make(programs, lines, view, 1, chosen));
+  pass.map_.bind();
+  pass.headDepth_ = drawHead(programs, headBuffers, view.size);
+  return pass;
 }
 
 void ShadowPass::bind(const Texture& volume) const {
+  map_.bind();
   glBindTextureUnit(0, volume.name());
   glBindTextureUnit(1, headDepth_.name());
-  glBindTextureUnit(2, hairFront_.name());
-  glBindTextureUnit(3, hairLayers_.name());
 }
 
 }  // namespace coif::preview

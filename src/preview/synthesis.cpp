@@ -129,7 +129,7 @@ void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const 
   glUseProgram(programs[model.synthesised ? ProgramId::StrandPoints : ProgramId::StrandPointsImported]);
   hair.bindForPoints(model.synthesised);
   bind(2, shares_), bind(6, columns_), bind(7, indices_);
-  glUniform1i(2, topology_ == Topology::Lines ? 1 : 0);
+  glUniform1i(2, int(topology_));
   glUniform1f(12, float(plan_.widthScale));
   glUniform1i(13, model.colored ? 1 : 0);
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
@@ -148,19 +148,20 @@ void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const 
 
 GLsizei StrandBuffers::indexCount(const Batch& batch) const {
   const std::size_t width = topology_ == Topology::Lines ? 1 : 2;
-  return GLsizei(width * batch.points + batch.strands);
+  return GLsizei(width * batch.points + (topology_ == Topology::Segments ? 0 : batch.strands));
 }
 
 void StrandBuffers::draw() const {
   if (plan_.points == 0) return;
+  constexpr GLenum kModes[] = {GL_TRIANGLE_STRIP, GL_LINE_STRIP, GL_LINES};
   glEnable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
   glBindVertexArray(array_.name());
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     const Batch& batch = plan_.batches[b];
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
                       GLsizeiptr(batch.points * kPackedPoint));
-    glDrawElements(topology_ == Topology::Lines ? GL_LINE_STRIP : GL_TRIANGLE_STRIP, indexCount(batch),
-                   GL_UNSIGNED_INT, reinterpret_cast<const void*>(indexOffsets_[b] * 4));
+    glDrawElements(kModes[int(topology_)], indexCount(batch), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(indexOffsets_[b] * 4));
   }
   glDisable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
 }

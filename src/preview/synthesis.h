@@ -25,7 +25,7 @@ class HairBuffers {
   Buffer locks_, bundleVertices_, vertices_, roots_, weights_, points_, colors_;
 };
 
-enum class Topology { Ribbons, Lines };
+enum class Topology { Ribbons, Lines, Segments };
 
 /// The points and strips of a plan, made on the GPU.
 class StrandBuffers {
@@ -35,7 +35,7 @@ class StrandBuffers {
   /// Makes the points again, after the mesh moved.
   void make(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
   /// All strips, with the bound program. Vertex v is side v & 1 of point v >> 1 of a ribbon, or point v of a
-  /// line.
+  /// line, or end v & 1 of the segment that ends in point v >> 1.
   void draw() const;
   /// One invocation of the bound program a point, batch after batch: points at binding 0, their number at location 0.
   void dispatchPoints() const;

@@ -18,7 +18,7 @@ TEST(Shaders, EveryPermutationCompilesAndEveryFileIsUsed) {
   if (!context.ok()) GTEST_SKIP() << context.error().text();
   ASSERT_TRUE((*context)->makeCurrent().ok());
   std::string all;
-  for (const ProgramSource& source : allPrograms()) {
+  for (const ProgramSource& source : allPermutations()) {
     const auto program = buildProgram(source);
     EXPECT_TRUE(program.ok()) << (program.ok() ? "" : program.error().text());
     for (const std::string& name : {source.vertex, source.fragment}) {

@@ -16,6 +16,7 @@
 #include "coif/light/camera.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
+#include "coif/light/visibility.h"
 #include "coif/scalp/polygon_mesh.h"
 #include "coif/strands/catmull_rom.h"
 #include "coif/strands/strand_set.h"
@@ -34,6 +35,14 @@ struct PreviewScene {
   Lights lights;
 };
 
+/// Deep opacity maps of seven layers, filtered. The GPU's versions have at most 256 slices and 16 layers, 4
+/// clusters, 128 occupancy slices in 4 slabs; LightMap takes the grid that fill and rim light have.
+inline VisibilityOptions previewVisibility() {
+  VisibilityOptions options;
+  options.filter = true;
+  return options;
+}
+
 struct PreviewOptions {
   int width = 1024, height = 1024;                  ///< pixels, 1 … 8192
   int subframes = 4;                                ///< 1 … 64, four samples a pixel each
@@ -42,6 +51,7 @@ struct PreviewOptions {
   Vec3f backgroundTop = Vec3f(0.135f, 0.145f, 0.165f), backgroundBottom = Vec3f(0.03f, 0.032f, 0.037f);
   bool transparentBackground = false;  ///< alpha is then the coverage
   bool shadows = true;
+  VisibilityOptions visibility = previewVisibility();  ///< of the key light; `opaque` is the scene's head
   bool lod = true;  ///< fewer, wider strands and fewer points where no one could tell
   double strandFraction =
       0;  ///< with lod: part of the strands to draw, 0 … 1; 0: by their width on the screen

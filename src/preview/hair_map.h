@@ -1,0 +1,75 @@
+// What the key light sees of the hair, on the GPU: the visibility methods of light's visibility.h, drawn from
+// lines by the same rule of fragments, so that both give the same transmittance.
+//
+// Cost in passes over the strands: None and LightMap 0; Exact 2; DeepOpacity and Occupancy 2; Opacity 1 and
+// one for every 32 slices; DensityClustering 3. Bytes a texel: DeepOpacity 8 + 4 · layers (in fours),
+// Occupancy 40, DensityClustering 56 (and 64 while it is made), Opacity 8 + 4 · slices, Exact 12 and 8 a
+// fragment.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "coif/light/light_view.h"
+#include "coif/light/visibility.h"
+#include "preview/fragment_lists.h"
+#include "preview/frame_data.h"
+#include "preview/synthesis.h"
+
+namespace coif::preview {
+
+/// Errors: InvalidArgument for what the GPU's versions do not have: more than 256 slices or 16 layers,
+/// clusters other than 4, occupancy other than 128 slices in 4 slabs, a number of layers to be chosen.
+Status checkMapOptions(const VisibilityOptions& options);
+
+/// The permutation of hair_map_query.glsl for these options, for any shader that looks the map up.
+std::vector<std::string> mapDefines(const VisibilityOptions& options);
+
+class HairMap {
+ public:
+  HairMap() = default;  ///< no hair; nothing to bind
+  /// Draws the map; lines (Topology::Segments) or null for no hair. `options.layerSize` must be set for
+  /// DeepOpacity. Errors: TooLarge where the driver cannot hold it.
+  static Result<HairMap> make(const Programs& programs, const StrandBuffers* lines, const LightView& view,
+                              double opacity, const VisibilityOptions& options);
+
+  /// Uniform block 1, texture units 2 … 4, storage blocks 1 … 3, as hair_map_query.glsl names them.
+  void bind() const;
+  const VisibilityOptions& options() const { return options_; }
+  const LightView& view() const { return view_; }
+  std::size_t bytes() const { return bytes_; }
+
+  struct Answer {
+    float transmittance, opticalDepth;  ///< the latter unfiltered
+  };
+  /// Looks up world points, for tests and for measuring errors. Filtered as the options say.
+  std::vector<Answer> query(const Programs& programs, std::span<const Vec3> points) const;
+
+ private:
+  void placeUniforms(double opacity);
+  void drawRange(const Programs& programs, const StrandBuffers& lines);
+  void drawWholeRange(const Programs& programs);
+  void drawOpacity(const Programs& programs, const StrandBuffers& lines);
+  void drawDeep(const Programs& programs, const StrandBuffers& lines);
+  void drawClusters(const Programs& programs, const StrandBuffers& lines);
+  void drawOccupancy(const Programs& programs, const StrandBuffers& lines);
+  Status drawLists(const Programs& programs, const StrandBuffers& lines);
+  Status draw(const Programs& programs, const StrandBuffers& lines);
+  Texture makeLayers(int count, GLenum format = GL_RGBA32F);
+  Texture makeFlat(GLenum format);
+
+  LightView view_;
+  VisibilityOptions options_;
+  std::size_t bytes_ = 0;
+  Buffer uniforms_, wholeRange_;
+  Texture range_, layers_, bits_;
+  std::optional<FragmentLists> lists_;
+};
+
+/// Every permutation that maps are drawn with, for the test that compiles them all.
+std::vector<ProgramSource> mapPrograms();
+/// Methods and options that look-ups differ by.
+std::vector<std::vector<std::string>> mapQueryPermutations();
+
+}  // namespace coif::preview
