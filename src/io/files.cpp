@@ -157,6 +157,19 @@ Result<PolygonMesh> loadPolygonMesh(const fs::path& path) {
   return load<PolygonMesh>(path, readMesh);
 }
 
+Result<std::optional<SkinBinding>> loadSkinBinding(const fs::path& path) {
+  COIF_ASSIGN(const std::vector<std::byte> stored, readFile(path, io::kMaxReaderBytes));
+  const Bytes bytes = withoutByteOrderMark(stored);
+  if (bytes.empty() || foreignFormat(io::asText(bytes)) != nullptr || detect(bytes, path) != Format::Usd) {
+    return std::optional<SkinBinding>();
+  }
+  try {
+    return io::readUsdSkin(bytes, path);
+  } catch (const std::bad_alloc&) {
+    return makeError(ErrorCode::TooLarge, "there is not enough memory to read this file", {}, path.string());
+  }
+}
+
 Result<StrandSet> loadStrands(const fs::path& path) {
   return load<StrandSet>(path, readStrands);
 }

@@ -3,6 +3,7 @@
 
 #include "coif/io/mesh_io.h"
 #include "coif/io/safe_file.h"
+#include "coif/io/skin_io.h"
 #include "coif/io/strand_io.h"
 
 namespace coif::io {
@@ -20,6 +21,9 @@ Result<PolygonMesh> readOff(Bytes bytes, const std::filesystem::path& path);
 Result<PolygonMesh> readStl(Bytes bytes, const std::filesystem::path& path);
 Result<PolygonMesh> readGltfMesh(Bytes bytes, const std::filesystem::path& path);
 Result<PolygonMesh> readUsdMesh(Bytes bytes, const std::filesystem::path& path);
+
+/// The UsdSkel binding of the mesh that readUsdMesh reads; none when nothing binds it.
+Result<std::optional<SkinBinding>> readUsdSkin(Bytes bytes, const std::filesystem::path& path);
 
 // Strands in.
 Result<StrandSet> readHair(Bytes bytes, const std::filesystem::path& path);

@@ -202,14 +202,27 @@ void dropHelpers(std::vector<Placed>& meshes, std::vector<std::string>& notes) {
 
 }  // namespace
 
+Result<std::vector<Placed>> usd::meshesOf(const Layer& layer, MemoryBudget& budget,
+                                          std::vector<std::string>& notes) {
+  COIF_ASSIGN(std::vector<Placed> meshes, placedPrims(layer, "Mesh", budget, notes));
+  if (meshes.empty()) return makeError(ErrorCode::Unsupported, "the file holds no Mesh prim");
+  dropHelpers(meshes, notes);
+  return meshes;
+}
+
+std::size_t usd::vertexCountOf(const Prim& mesh) {
+  for (const char* needed : {"points", "faceVertexCounts", "faceVertexIndices"}) {
+    if (mesh.value(needed) == nullptr) return 0;
+  }
+  return std::size_t(mesh.value("points")->array.count);
+}
+
 Result<PolygonMesh> readUsdMesh(Bytes bytes, const std::filesystem::path& path) {
   MemoryBudget budget(bytes.size());
   auto read = [&]() -> Result<PolygonMesh> {
     COIF_ASSIGN(const Layer layer, readLayer(bytes, budget));
     std::vector<std::string> notes = layer.notes;
-    COIF_ASSIGN(std::vector<Placed> meshes, placedPrims(layer, "Mesh", budget, notes));
-    if (meshes.empty()) return makeError(ErrorCode::Unsupported, "the file holds no Mesh prim");
-    dropHelpers(meshes, notes);
+    COIF_ASSIGN(const std::vector<Placed> meshes, usd::meshesOf(layer, budget, notes));
     MeshImport import(budget);
     for (const Placed& placed : meshes) COIF_TRY(import.add(placed));
     PolygonMesh mesh = import.finish();

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "usd_layer.h"
+#include "usd_skin.h"
 
 namespace coif::io::usd {
 namespace {
@@ -224,6 +225,19 @@ void addWeights(const StrandSet& set, const Group& group, Prim& prim) {
   prim.attributes.push_back(std::move(values));
 }
 
+/// Skinning moves points: every point of a strand goes with its root.
+void addSkin(const StrandExport& what, const Group& group, Prim& prim) {
+  const SkinBinding& skin = what.skin->strands;
+  std::vector<std::uint32_t> rows;
+  if (!skin.rigid()) {
+    rows.reserve(group.pointCount);
+    forEachStrand(group, [&](std::uint64_t s) {
+      rows.insert(rows.end(), what.strands->offsets[s + 1] - what.strands->offsets[s], std::uint32_t(s));
+    });
+  }
+  bindToSkeleton(skin, rows, prim);
+}
+
 Prim describeGroup(const StrandExport& what, const Group& group, float constantWidth) {
   Prim prim;
   prim.typeName = "BasisCurves";
@@ -234,6 +248,7 @@ Prim describeGroup(const StrandExport& what, const Group& group, float constantW
   addIdentity(*what.strands, group, prim);
   addWeights(*what.strands, group, prim);
   prim.relationships.push_back({"material:binding", {"/Hair/Looks/Strands"}});
+  if (what.skin != nullptr) addSkin(what, group, prim);
   return prim;
 }
 
@@ -292,10 +307,10 @@ std::vector<Entry> layerMetadata(const StrandExport& what, double unit) {
   return metadata;
 }
 
-Prim describeRoot(const StrandSet& set) {
+Prim describeRoot(const StrandSet& set, bool skinned) {
   Prim root;
   root.name = "Hair";
-  root.typeName = "Xform";
+  root.typeName = skinned ? "SkelRoot" : "Xform";  // UsdSkel moves what lies below a SkelRoot alone
   if (!set.groupNames.empty()) {
     Value names = string("");
     names.type.array = true;
@@ -313,8 +328,14 @@ Prim describeRoot(const StrandSet& set) {
 
 }  // namespace
 
-Result<Layer> describeExport(const StrandExport& what, std::vector<std::string>& notes) {
+Result<Layer> describeExport(const StrandExport& all, std::vector<std::string>& notes) {
+  StrandExport what = all;
   const StrandSet& set = *what.strands;
+  if (what.skin != nullptr && !what.frames.empty()) {
+    notes.push_back("Simulated frames move with the head already; the skin's binding is not written.");
+    what.skin = nullptr;
+  }
+  if (what.skin != nullptr) COIF_TRY(checkSkin(what));
   COIF_TRY(checkFrames(what));
   COIF_TRY(checkLengths(set));
   const double unit = unitOf(set, notes);
@@ -323,7 +344,7 @@ Result<Layer> describeExport(const StrandExport& what, std::vector<std::string>&
 
   Layer layer;
   layer.metadata = layerMetadata(what, unit);
-  Prim root = describeRoot(set);
+  Prim root = describeRoot(set, what.skin != nullptr);
   std::vector<std::string> taken = {"HairMesh", "Head", "Looks"};
   for (const Group& group : groupsOf(set)) {
     Prim prim = describeGroup(what, group, constantWidth);
@@ -332,10 +353,12 @@ Result<Layer> describeExport(const StrandExport& what, std::vector<std::string>&
   }
   if (what.hairMesh != nullptr) {
     COIF_ASSIGN(Prim mesh, describeHairMesh(*what.hairMesh));
+    if (what.skin != nullptr) bindVertices(what.skin->hairMesh, what.hairMesh->vertices().size(), mesh);
     root.children.push_back(std::move(mesh));
   }
   if (what.head != nullptr) {
     COIF_ASSIGN(Prim head, describeHead(*what.head));
+    if (what.skin != nullptr) bindVertices(what.skin->head, what.head->vertexCount(), head);
     root.children.push_back(std::move(head));
   }
   root.children.push_back(describeLooks("/Hair/Looks"));

@@ -22,6 +22,13 @@ struct Placed {
 Result<std::vector<Placed>> placedPrims(const Layer& layer, std::string_view typeName, MemoryBudget& budget,
                                         std::vector<std::string>& notes);
 
+/// The Mesh prims that a mesh file is read from, guides and proxies only where there is nothing else. Errors:
+/// Unsupported when there is none.
+Result<std::vector<Placed>> meshesOf(const Layer& layer, MemoryBudget& budget,
+                                     std::vector<std::string>& notes);
+/// How many vertices a Mesh prim gives the mesh that is read: none without points, counts and corners.
+std::size_t vertexCountOf(const Prim& mesh);
+
 /// The prim's own transform by its xformOpOrder; `resets` when it starts from the world again.
 Result<Eigen::Matrix4d> localTransform(const Prim& prim, bool& resets);
 

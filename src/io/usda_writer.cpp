@@ -60,14 +60,16 @@ void appendComponent(Base base, const std::byte* bytes, std::string& out) {
 }
 
 void appendElement(const Type& type, const std::byte* bytes, std::string& out) {
-  COIF_CHECK(type.components <= 4, "matrices are not written");
   const std::size_t size = baseBytes(type.base);
-  if (type.components > 1) out += '(';
+  const int row = type.components == 16 ? 4 : type.components;  // a matrix is a tuple of its rows
+  if (type.components > row) out += "( ";
   for (int c = 0; c < type.components; ++c) {
     if (c > 0) out += ", ";
+    if (type.components > 1 && c % row == 0) out += '(';
     appendComponent(type.base, bytes + std::size_t(c) * size, out);
+    if (type.components > 1 && c % row == row - 1) out += ')';
   }
-  if (type.components > 1) out += ')';
+  if (type.components > row) out += " )";
 }
 
 std::string inQuotes(std::string_view text) {

@@ -6,6 +6,7 @@
 #include "coif/base/random.h"
 #include "coif/hairmesh/invariants.h"
 #include "coif/io/mesh_io.h"
+#include "coif/io/skin_io.h"
 
 namespace coif {
 
@@ -95,6 +96,13 @@ struct Evaluation::Impl {
   Status check(const Scene& scene);
   Status runPlace(const Scene& scene, const Context& context);
   Status growStrands(const Scene& scene, const Context& context);
+
+  struct Skin {
+    std::optional<StrandSkin> binding;
+    std::vector<std::string> notes;
+  };
+  /// Of the head's file, carried over to the strands; only USD files can hold it.
+  Result<Skin> skinFor(const std::filesystem::path& output, const Context& context) const;
 };
 
 Evaluation::Evaluation(EvaluateOptions options) : impl_(std::make_unique<Impl>()) {
@@ -214,6 +222,22 @@ Status Evaluation::Impl::growStrands(const Scene& scene, const Context& context)
   return {};
 }
 
+Result<Evaluation::Impl::Skin> Evaluation::Impl::skinFor(const std::filesystem::path& output,
+                                                         const Context& context) const {
+  Skin skin;
+  const std::string extension = output.extension().string();
+  if (!head || !(extension == ".usd" || extension == ".usda" || extension == ".usdc")) return skin;
+  auto binding = loadSkinBinding(headPath);
+  if (!binding.ok()) {
+    skin.notes.push_back("the head's binding to a skeleton is left out: " + binding.error().text());
+    return skin;
+  }
+  if (!*binding) return skin;
+  COIF_ASSIGN(skin.binding, skinHair(std::move(**binding), *head, placed, grown.strands, context));
+  skin.notes.push_back("bound to the skeleton " + skin.binding->head.skeleton + ", as the head is");
+  return skin;
+}
+
 Result<const Surface*> Evaluation::head(const Scene& scene, const Context& context) {
   COIF_TRY(impl_->loadHead(scene, context));
   return static_cast<const Surface*>(impl_->head.get());
@@ -248,11 +272,14 @@ Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesyst
   what.head = impl_->head ? &impl_->head->mesh() : nullptr;
   what.color = scene.look.hairColor;
   const Stopwatch watch;
+  COIF_ASSIGN(const Impl::Skin skin, impl_->skinFor(path, context));
+  if (what.skin == nullptr && skin.binding) what.skin = &*skin.binding;
   context.report("writing " + path.filename().string(), 0);
   COIF_ASSIGN(const WriteReport written, saveStrands(what, path, context));
   StageReport& report = impl_->add("export", StageState::Ran, path.filename().string() + " was asked for",
                                    watch.seconds(), written.bytes);
   report.notes = written.notes;
+  report.notes.insert(report.notes.end(), skin.notes.begin(), skin.notes.end());
   return written;
 }
 

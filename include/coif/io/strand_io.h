@@ -10,6 +10,7 @@
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/scalp/polygon_mesh.h"
+#include "coif/strands/skin.h"
 #include "coif/strands/strand_set.h"
 
 namespace coif {
@@ -29,6 +30,7 @@ struct StrandExport {
   const StrandSet* strands = nullptr;  ///< required
   const HairMesh* hairMesh = nullptr;  ///< written beside the strands as an ordinary mesh (USD, glTF)
   const PolygonMesh* head = nullptr;   ///< written beside the strands (USD, glTF)
+  const StrandSkin* skin = nullptr;    ///< binds all three to the head's skeleton (USD)
   std::vector<StrandFrame> frames;     ///< USD time samples; empty: static
   double timeCodesPerSecond = 24;
   StrandMesh mesh = StrandMesh::Cards;  ///< glTF fall-back mesh
