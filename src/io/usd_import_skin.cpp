@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "formats.h"
+#include "usd_skin.h"
 #include "usd_walk.h"
 
 namespace coif::io {
@@ -147,6 +148,8 @@ class SkinImport {
   Status bind(const Placed& placed, Part& part) {
     const Rig& rig = rigs_.at(placed.prim);
     if (rig.skeleton.empty()) return makeError(ErrorCode::Malformed, "the mesh names no skeleton");
+    if (!isPrimPath(rig.skeleton))
+      return makeError(ErrorCode::Unsupported, "the skeleton is not named by an absolute path of prims");
     const Prim* skeleton = primAt(layer_.prims, rig.skeleton);
     const Value* order = skeleton == nullptr ? nullptr : skeleton->value("joints");
     const std::size_t joints = !rig.joints.empty() ? rig.joints.size()

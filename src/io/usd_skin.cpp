@@ -61,11 +61,21 @@ void bindVertices(const SkinBinding& skin, std::size_t vertices, Prim& prim) {
   bindToSkeleton(skin, rows, prim);
 }
 
+bool isPrimPath(std::string_view path) {
+  return path.size() > 1 && path.front() == '/' && path.back() != '/' &&
+         path.find("//") == std::string_view::npos &&
+         path.find_first_of(" .:,;<>{}[]()\"'\\\n\t") == std::string_view::npos;
+}
+
 Status checkSkin(const StrandExport& what) {
   const auto fits = [](const SkinBinding& skin, std::size_t elements) {
     const std::size_t size = skin.rigid() ? skin.influences : elements * skin.influences;
     return skin.influences > 0 && skin.joints.size() == size && skin.weights.size() == size;
   };
+  if (!isPrimPath(what.skin->strands.skeleton) || !isPrimPath(what.skin->hairMesh.skeleton) ||
+      !isPrimPath(what.skin->head.skeleton)) {
+    return makeError(ErrorCode::InvalidArgument, "the skin's binding names no skeleton by an absolute path");
+  }
   if (fits(what.skin->strands, what.strands->strandCount()) &&
       (what.hairMesh == nullptr || fits(what.skin->hairMesh, what.hairMesh->vertices().size())) &&
       (what.head == nullptr || fits(what.skin->head, what.head->vertexCount()))) {

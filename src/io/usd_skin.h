@@ -13,7 +13,10 @@ void bindToSkeleton(const SkinBinding& skin, std::span<const std::uint32_t> rows
 /// The same, point v by element v.
 void bindVertices(const SkinBinding& skin, std::size_t vertices, Prim& prim);
 
-/// Refuses bindings of another size than what they move.
+/// "/Rig/Skeleton": an absolute path of prims by plain names.
+bool isPrimPath(std::string_view path);
+
+/// Refuses bindings of another size than what they move, or without a skeleton's path.
 Status checkSkin(const StrandExport& what);
 
 }  // namespace coif::io::usd

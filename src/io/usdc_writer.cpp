@@ -65,7 +65,10 @@ class CrateWriter {
     file_.write(std::vector<std::byte>(kHeaderBytes));
     names_.index("");
     addPath("", false, 0);
-    indexPaths(layer.prims, "");
+    Branch root;
+    for (const Prim& p : layer.prims) root.children.push_back(branchOf(p));
+    for (const Prim& p : layer.prims) addTargets(p, root);
+    indexPaths(root);
     rootSpec(layer);
     for (const Prim& p : layer.prims) primSpecs(p, "/" + p.name);
     writeTables();
@@ -87,26 +90,59 @@ class CrateWriter {
     paths_.push_back({isProperty ? -std::int32_t(name) : std::int32_t(name), 0});
   }
 
-  void indexPaths(const std::vector<Prim>& prims, const std::string& parent) {
-    paths_[pathIndices_.at(parent)] = {std::int32_t(names_.index("")), prims.empty() ? -2 : -1};
-    for (const Prim& p : prims) indexPrim(p, parent + "/" + p.name, &p == &prims.back());
+  /// A prim's place among the paths. Targets in other layers have one too, but no spec.
+  struct Branch {
+    std::string name;
+    std::vector<Branch> children;
+    std::vector<std::string> properties;
+  };
+
+  static Branch branchOf(const Prim& p) {
+    Branch branch;
+    branch.name = p.name;
+    for (const Prim& child : p.children) branch.children.push_back(branchOf(child));
+    for (const Attribute& a : p.attributes) branch.properties.push_back(a.name);
+    for (const Relationship& r : p.relationships) branch.properties.push_back(r.name);
+    return branch;
   }
 
-  void indexPrim(const Prim& p, const std::string& path, bool last) {
-    const std::size_t self = paths_.size();
-    addPath(path, false, names_.index(p.name));
-    const std::size_t properties = p.attributes.size() + p.relationships.size();
-    for (const Prim& child : p.children) {
-      indexPrim(child, path + "/" + child.name, properties == 0 && &child == &p.children.back());
+  /// Relationships aim at prims; connections stay within the layer.
+  static void addTargets(const Prim& p, Branch& root) {
+    for (const Relationship& r : p.relationships) {
+      for (const std::string& target : r.targets) addTarget(target, root);
     }
-    std::size_t left = properties;
-    auto addProperty = [&](const std::string& name) {
+    for (const Prim& child : p.children) addTargets(child, root);
+  }
+
+  static void addTarget(std::string_view path, Branch& root) {
+    Branch* at = &root;
+    while (!path.empty()) {
+      path.remove_prefix(1);  // the slash
+      const std::string_view name = path.substr(0, path.find('/'));
+      path.remove_prefix(name.size());
+      const auto child = std::find_if(at->children.begin(), at->children.end(),
+                                      [&](const Branch& branch) { return branch.name == name; });
+      at = child != at->children.end() ? &*child
+                                       : &at->children.emplace_back(Branch{std::string(name), {}, {}});
+    }
+  }
+
+  void indexPaths(const Branch& root) {
+    paths_[0] = {std::int32_t(names_.index("")), root.children.empty() ? -2 : -1};
+    for (const Branch& b : root.children) indexBranch(b, "/" + b.name, &b == &root.children.back());
+  }
+
+  void indexBranch(const Branch& b, const std::string& path, bool last) {
+    const std::size_t self = paths_.size();
+    addPath(path, false, names_.index(b.name));
+    for (const Branch& child : b.children) {
+      indexBranch(child, path + "/" + child.name, b.properties.empty() && &child == &b.children.back());
+    }
+    for (const std::string& name : b.properties) {
       addPath(path + "." + name, true, names_.index(name));
-      paths_.back().jump = --left == 0 ? -2 : 0;
-    };
-    for (const Attribute& a : p.attributes) addProperty(a.name);
-    for (const Relationship& r : p.relationships) addProperty(r.name);
-    const bool leaf = properties == 0 && p.children.empty();
+      paths_.back().jump = &name == &b.properties.back() ? -2 : 0;
+    }
+    const bool leaf = b.properties.empty() && b.children.empty();
     paths_[self].jump = leaf ? (last ? -2 : 0) : (last ? -1 : std::int32_t(paths_.size() - self));
   }
 

@@ -158,7 +158,7 @@ def skinned_points(stage, pose):
     cache = UsdSkel.Cache()
     assert cache.Populate(UsdSkel.Root.Get(stage, "/Hair"), Usd.TraverseInstanceProxies())
     query = cache.GetSkinningQuery(curves.GetPrim())
-    assert query.IsValid() and query.HasJointInfluences()
+    assert query and query.HasJointInfluences()
     transforms = cache.GetSkelQuery(skeleton).ComputeSkinningTransforms(Usd.TimeCode.Default())
     rest = curves.GetPointsAttr().Get()
     moved = Vt.Vec3fArray(rest)
