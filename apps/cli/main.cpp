@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
   addCheck(app, session);
   addConvert(app, session);
   addBench(app, session);
+  addSimulate(app, session);
+  addDrape(app, session);
   addExampleHead(app, session);
   try {
     app.parse(argc, argv);

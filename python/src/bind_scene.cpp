@@ -11,6 +11,7 @@
 #include "bind.h"
 #include "bind_hairmesh.h"
 #include "bind_scalp.h"
+#include "bind_simulate.h"
 #include "bind_strands.h"
 #include "coif/scene/evaluate.h"
 #include "coif/scene/hairstyle.h"
@@ -101,6 +102,97 @@ HairMeshModel placedMesh(SceneModel& model) {
   return result;
 }
 
+SimulateOptions simulateOptions(std::size_t frames, double fps, const nb::object& poses,
+                                const nb::object& roots, const std::optional<std::filesystem::path>& cache) {
+  SimulateOptions what;
+  what.frames = frames;
+  what.framesPerSecond = fps;
+  what.motion = toMotion(poses, roots);
+  if (cache) what.cache = *cache;
+  return what;
+}
+
+DynamicsCache simulateScene(SceneModel& model, std::size_t frames, double fps, const nb::object& poses,
+                            const nb::object& roots, const std::optional<std::filesystem::path>& cache,
+                            bool useHead, int threads, nb::object progress) {
+  const SimulateOptions what = simulateOptions(frames, fps, poses, roots, cache);
+  return model.use(
+      optionsOf(useHead, {}), threads, std::move(progress),
+      [&](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<DynamicsCache> {
+        const auto motion = evaluation.simulate(scene, what, context);
+        if (!motion.ok()) return motion.error();
+        return **motion;
+      });
+}
+
+Strands strandsAt(SceneModel& model, const DynamicsCache& motion, std::size_t frame, bool useHead,
+                  int threads) {
+  return model.use(
+      optionsOf(useHead, {}), threads, nb::none(),
+      [&](Evaluation& evaluation, const Scene& scene, const Context& context) -> Result<Strands> {
+        // The stage loads the head; without it roots would stay on the cage.
+        const auto head = evaluation.head(scene, context);
+        if (!head.ok()) return head.error();
+        auto strands = evaluation.strandsAt(scene, motion, frame, context);
+        if (!strands.ok()) return strands.error();
+        return Strands{std::move(strands).value(), {}};
+      });
+}
+
+DrapeReport drapeScene(SceneModel& model, double seconds, double tolerance, bool useHead, int threads) {
+  Scene draped = model.scene;
+  const DrapeReport report = model.use(optionsOf(useHead, {}), threads, nb::none(),
+                                       [&](Evaluation& evaluation, const Scene&, const Context& context) {
+                                         return evaluation.drape(draped, {seconds, tolerance}, context);
+                                       });
+  model.scene = std::move(draped);
+  return report;
+}
+
+void bindMotion(nb::module_& m) {
+  using C = DynamicsCache;
+  nb::class_<C>(m, "Motion", "Hair in motion: positions of the hair mesh's vertices, frame by frame.")
+      .def_prop_ro(
+          "positions",
+          [](nb::object self) {
+            C& cache = nb::cast<C&>(self);
+            static float none{};
+            return nb::ndarray<nb::numpy, const float, nb::shape<-1, -1, 3>, nb::c_contig>(
+                cache.positions.empty() ? &none : cache.positions[0].data(),
+                {cache.frameCount(), std::size_t(cache.vertexCount), 3}, self);
+          },
+          "(F, V, 3) 32-bit floats in scene units, a view.")
+      .def_prop_ro(
+          "head_poses",
+          [](const C& cache) {
+            std::vector<double> out;
+            for (const RigidPose& pose : cache.poses) {
+              for (int row = 0; row < 3; ++row) {
+                for (int column = 0; column < 3; ++column) out.push_back(pose.rotation(row, column));
+                out.push_back(pose.position[row]);
+              }
+              out.insert(out.end(), {0, 0, 0, 1});
+            }
+            auto* kept = new std::vector<double>(std::move(out));
+            nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+            return nb::ndarray<nb::numpy, double, nb::shape<-1, 4, 4>, nb::c_contig>(
+                kept->data(), {kept->size() / 16, 4, 4}, owner);
+          },
+          nb::rv_policy::reference, "(F, 4, 4) rigid transforms of the head by frame (a copy).")
+      .def_ro("fps", &C::framesPerSecond, "Frames a second.")
+      .def("__len__", &C::frameCount)
+      .def(
+          "save", [](const C& cache, const std::filesystem::path& path) { take(saveCache(cache, path)); },
+          "path"_a, "Writes a .coifcache; the old one stays whole until the new one is.")
+      .def_static(
+          "load", [](const std::filesystem::path& path) { return take(loadCache(path)); }, "path"_a,
+          "Reads a .coifcache. Raises Error for a file that is cut off, changed or no cache.")
+      .def("__repr__", [](const C& cache) {
+        return "<coif.Motion: " + std::to_string(cache.frameCount()) + " frames of " +
+               std::to_string(cache.vertexCount) + " vertices>";
+      });
+}
+
 void bindSettings(nb::module_& m) {
   nb::class_<StrandSettings>(m, "StrandSettings", "What a scene asks of grow(), as the .coif file keeps it.")
       .def_rw("count", &StrandSettings::count, "Strands wanted.")
@@ -154,6 +246,7 @@ void bindHairstyles(nb::module_& m) {
 void bindScene(nb::module_& m) {
   bindSettings(m);
   bindHairstyles(m);
+  bindMotion(m);
   nb::class_<SceneModel> c(
       m, "Scene",
       "The document: which head, which hair mesh, how strands grow on it. A .coif file.\n\n"
@@ -202,6 +295,25 @@ void bindScene(nb::module_& m) {
       .def(
           "explain", [](SceneModel& s) { return explainText(s.reports()); },
           "The reports as a table for people.");
+  c.def("simulate", &simulateScene, "frames"_a, nb::kw_only(), "fps"_a = 24.0,
+        "head_poses"_a.none() = nb::none(), "root_positions"_a.none() = nb::none(), "cache"_a = nb::none(),
+        "use_head"_a = true, "threads"_a = 0, "progress"_a.none() = nb::none(),
+        "Moves the hair by `dynamics`: a Motion of at least so many frames, the first the modelled style.\n\n"
+        "head_poses: (F, 4, 4) rigid transforms of the head by frame; root_positions: (F, R, 3) of the "
+        "layer-0\n"
+        "vertices instead. cache: a .coifcache that is gone on with, with the same bytes, and kept up to "
+        "date.\n"
+        "The interpreter lock is released. Raises Error.")
+      .def("strands_at", &strandsAt, "motion"_a, "frame"_a, nb::kw_only(), "use_head"_a = true,
+           "threads"_a = 0,
+           "The strands on a frame of a Motion of this scene: the same strands on every frame.")
+      .def("drape", &drapeScene, nb::kw_only(), "seconds"_a = 10.0, "tolerance"_a = 1e-4, "use_head"_a = true,
+           "threads"_a = 0,
+           "Lets the hair mesh hang under gravity until it rests and keeps the shape. Returns a DrapeReport.")
+      .def_prop_rw(
+          "dynamics", [](SceneModel& s) -> DynamicsSettings& { return s.scene.dynamics; },
+          [](SceneModel& s, const DynamicsSettings& settings) { s.scene.dynamics = settings; },
+          nb::rv_policy::reference_internal, "How hair moves; change its fields.");
   c.def_prop_rw(
        "hair_mesh",
        [](const SceneModel& s) {

@@ -1,5 +1,6 @@
 // The extension module coif._coif: one binding unit a room, in the order of the rooms.
 #include "bind.h"
+#include "bind_simulate.h"
 
 NB_MODULE(_coif, m) {
   using namespace coif::python;
@@ -10,6 +11,7 @@ NB_MODULE(_coif, m) {
   bindPlace(m);
   bindStrands(m);
   bindLight(m);
+  bindSimulate(m);
   bindScene(m);
   bindEditor(m);
 #ifdef COIF_WITH_PREVIEW

@@ -7,6 +7,7 @@
 #include "coif/hairmesh/invariants.h"
 #include "coif/io/mesh_io.h"
 #include "coif/io/skin_io.h"
+#include "scene/evaluation_impl.h"
 
 namespace coif {
 
@@ -43,6 +44,8 @@ std::string countText(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what;
 }
 
+}  // namespace
+
 GrowOptions growOptions(const Scene& scene, const Surface* head) {
   const StrandSettings& s = scene.strands;
   GrowOptions out;
@@ -58,52 +61,6 @@ GrowOptions growOptions(const Scene& scene, const Surface* head) {
   out.head = head;
   return out;
 }
-
-}  // namespace
-
-struct Evaluation::Impl {
-  EvaluateOptions options;
-  std::vector<StageReport> reports;
-
-  std::filesystem::path headPath;
-  std::filesystem::file_time_type headTime;
-  std::uint64_t headHash = 0;
-  std::unique_ptr<Surface> head;
-  std::optional<std::uint64_t> checkedHash;
-  std::optional<std::uint64_t> placeKey;  // of the scene's mesh, not of the placed one
-  HairMesh placed;
-  std::uint64_t placedHash = 0;
-  std::optional<PlaceReport> placeReport;
-  std::optional<std::uint64_t> strandsKey;
-  GrowResult grown;
-
-  bool forced(const char* stage) const {
-    return options.force.contains(stage) || options.force.contains("all");
-  }
-
-  StageReport& add(const char* stage, StageState state, std::string reason, double seconds = 0,
-                   std::uint64_t bytes = 0) {
-    StageReport report;
-    report.name = stage;
-    report.state = state;
-    report.reason = std::move(reason);
-    report.seconds = seconds;
-    report.bytes = bytes;
-    return reports.emplace_back(std::move(report));
-  }
-
-  Status loadHead(const Scene& scene, const Context& context);
-  Status check(const Scene& scene);
-  Status runPlace(const Scene& scene, const Context& context);
-  Status growStrands(const Scene& scene, const Context& context);
-
-  struct Skin {
-    std::optional<StrandSkin> binding;
-    std::vector<std::string> notes;
-  };
-  /// Of the head's file, carried over to the strands; only USD files can hold it.
-  Result<Skin> skinFor(const std::filesystem::path& output, const Context& context) const;
-};
 
 Evaluation::Evaluation(EvaluateOptions options) : impl_(std::make_unique<Impl>()) {
   impl_->options = std::move(options);

@@ -4,6 +4,7 @@
 
 #include "coif/io/safe_file.h"
 #include "coif/scene/scene.h"
+#include "scene/dynamics_json.h"
 #include "scene/json_reader.h"
 #include "scene/typed_array.h"
 
@@ -219,6 +220,7 @@ Result<Scene> readScene(const nlohmann::json& json) {
   out.placedHash = reader.integer("placedHash", 0, 0, ~std::uint64_t{0});
   if (reader.has("strands")) out.strands = readStrands(reader.object("strands"));
   if (reader.has("look")) out.look = readLook(reader.object("look"));
+  if (reader.has("dynamics")) out.dynamics = scene::readDynamics(reader.object("dynamics"));
   COIF_TRY(reader.status());
   COIF_ASSIGN(out.hairMesh, readMesh(reader.object("hairMesh")));
   COIF_TRY(reader.status());
@@ -243,6 +245,7 @@ std::string sceneText(const Scene& scene) {
   out["look"] = {{"azimuth", scene.look.azimuthDeg},
                  {"elevation", scene.look.elevationDeg},
                  {"hairColor", {c[0], c[1], c[2]}}};
+  out["dynamics"] = scene::dynamicsJson(scene.dynamics);
   out["placedHash"] = scene.placedHash;
   out["hairMesh"] = meshJson(scene.hairMesh);
   return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

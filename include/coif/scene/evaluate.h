@@ -1,7 +1,8 @@
 // The lazy stage graph: a stage runs only if its result is asked for and one of its inputs changed.
 //
 //   head ──────────────┐
-//   hair mesh ─ place ─┴─ strands ─ export
+//   hair mesh ─ place ─┼─ strands ─ export
+//                      └─ simulate ─ strands of a frame
 #pragma once
 
 #include <memory>
@@ -13,7 +14,9 @@
 #include "coif/base/report.h"
 #include "coif/io/strand_io.h"
 #include "coif/place/place.h"
+#include "coif/scene/dynamics_cache.h"
 #include "coif/scene/scene.h"
+#include "coif/simulate/simulation.h"
 
 namespace coif {
 
@@ -23,8 +26,18 @@ struct EvaluateOptions {
   std::set<std::string> force;  ///< stages whose skipping and reuse are turned off ("all" for every one)
 };
 
+/// What `simulate` is asked for; how hair moves is the scene's own (Scene::dynamics).
+struct SimulateOptions {
+  std::size_t frames = 24;  ///< the first is the modelled style, settled as the scene says
+  double framesPerSecond = 24;
+  HeadMotion motion;
+  /// A .coifcache that is gone on with if it is of the same simulation, and kept up to date on the way;
+  /// empty: none.
+  std::filesystem::path cache;
+};
+
 /// Names of the stages, in order.
-inline constexpr const char* kStages[] = {"head", "check", "place", "strands", "export"};
+inline constexpr const char* kStages[] = {"head", "check", "place", "strands", "simulate", "export"};
 
 /// Holds the results of the stages between calls, keyed by hashes of their inputs.
 class Evaluation {
@@ -38,6 +51,21 @@ class Evaluation {
   /// The hair mesh with internal vertices placed.
   Result<const HairMesh*> placedMesh(const Scene& scene, const Context& context = {});
   Result<const StrandSet*> strands(const Scene& scene, const Context& context = {});
+  /// Hair in motion: at least the frames asked for. Reused when nothing changed, gone on with from memory or
+  /// from the cache file when more frames are wanted. Errors also those of Simulation and of the file; a
+  /// cache of another simulation is an error, never overwritten.
+  Result<const DynamicsCache*> simulate(const Scene& scene, const SimulateOptions& what,
+                                        const Context& context = {});
+  /// The strands on a frame of `motion`, the same strands on each: grown in the head's own frame, where its
+  /// roots are at rest. Fixed points a strand, whatever the scene's tolerance. With a deforming scalp roots
+  /// follow the cage alone. Errors: InvalidArgument for a frame that it does not have or another mesh.
+  Result<StrandSet> strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
+                              const Context& context = {});
+  /// Writes all frames as USD time samples (.usda, .usdc); simulates first. A moving head is left out.
+  Result<WriteReport> exportMotion(const Scene& scene, const SimulateOptions& what,
+                                   const std::filesystem::path& path, const Context& context = {});
+  /// Lets the scene's hair mesh hang under gravity and counts it as placed: a modelling step.
+  Result<DrapeReport> drape(Scene& scene, const DrapeOptions& options = {}, const Context& context = {});
   /// Writes strands, hair mesh and head to `path`; asks for whatever it needs.
   Result<WriteReport> exportTo(const Scene& scene, const std::filesystem::path& path, StrandExport what = {},
                                const Context& context = {});
@@ -45,8 +73,9 @@ class Evaluation {
   /// What each stage did, oldest first; cleared by clearReports().
   const std::vector<StageReport>& reports() const;
   void clearReports();
-  const GrowReport* growReport() const;    ///< of the strands held; null when none
-  const PlaceReport* placeReport() const;  ///< of the last solve; null when none ran
+  const GrowReport* growReport() const;              ///< of the strands held; null when none
+  const PlaceReport* placeReport() const;            ///< of the last solve; null when none ran
+  const SimulationReport* simulationReport() const;  ///< of the frames computed last; null when none
 
  private:
   struct Impl;

@@ -6,6 +6,7 @@
 
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
+#include "coif/simulate/dynamics_settings.h"
 #include "coif/strands/grow.h"
 
 namespace coif {
@@ -35,7 +36,7 @@ struct LookSettings {
 };
 
 struct Scene {
-  static constexpr int kVersion = 1;  ///< of the file format
+  static constexpr int kVersion = 2;  ///< of the file format; 1 had no dynamics
 
   std::string name;  ///< of the hairstyle
   HeadReference head;
@@ -46,6 +47,7 @@ struct Scene {
       0;  ///< meshHash() right after the last placement; equal now: nothing moved since
   StrandSettings strands;
   LookSettings look;
+  DynamicsSettings dynamics;
   std::filesystem::path file;  ///< where it was loaded from or saved to; not stored
 
   std::filesystem::path headPath() const;  ///< absolute, or relative to the working directory

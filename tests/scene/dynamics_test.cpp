@@ -1,0 +1,201 @@
+// Dynamics in the document, the stage "simulate", and the cache file.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "coif/io/safe_file.h"
+#include "coif/scene/evaluate.h"
+#include "scene/sample_scene.h"
+
+namespace coif {
+namespace {
+
+using nlohmann::json;
+
+std::filesystem::path folder() {
+  const auto path = std::filesystem::temp_directory_path() / "coif-dynamics-test";
+  std::filesystem::create_directories(path);
+  return path;
+}
+
+EvaluateOptions noHead() {
+  EvaluateOptions options;
+  options.useHead = false;
+  return options;
+}
+
+SimulateOptions frames(std::size_t count) {
+  SimulateOptions what;
+  what.frames = count;
+  return what;
+}
+
+DynamicsSettings unlikeTheDefaults() {
+  DynamicsSettings s;
+  s.method = DynamicsMethod::EnergyKeeping;
+  double* numbers[] = {&s.longestStep, &s.settleSeconds,    &s.gravity,  &s.droop,       &s.lateral,
+                       &s.drag,        &s.gustSpeed,        &s.gustSize, &s.gustSeconds, &s.shelter,
+                       &s.thickness,   &s.contactStiffness, &s.friction, &s.repulsion,   &s.density,
+                       &s.cell,        &s.hairFriction};
+  double value = 0.1234567890123;
+  for (double* number : numbers) *number = value += 0.01;
+  s.wind = WindKind::Gusts;
+  s.windVelocity = Vec3(1, -2, 0.3);
+  s.seed = ~std::uint64_t{0};
+  s.airCells = 17;
+  s.collide = false;
+  s.capsules.push_back({Vec3(1, 2, 3), Vec3(4, 5, 6), 0.7, false});
+  return s;
+}
+
+TEST(DynamicsSettings, SurviveTheFileToTheBit) {
+  Scene scene = test::sampleScene();
+  scene.dynamics = unlikeTheDefaults();
+  const auto again = parseScene(sceneText(scene), "a.coif");
+  ASSERT_TRUE(again.ok()) << again.error().text();
+  EXPECT_EQ(again->dynamics, scene.dynamics);
+  EXPECT_EQ(sceneText(*again), sceneText(scene));
+}
+
+TEST(DynamicsSettings, AreDefaultsInAnOlderFile) {
+  json document = json::parse(sceneText(test::sampleScene()));
+  document["version"] = 1;
+  document.erase("dynamics");
+  const auto scene = parseScene(document.dump(), "old.coif");
+  ASSERT_TRUE(scene.ok()) << scene.error().text();
+  EXPECT_EQ(scene->dynamics, DynamicsSettings{});
+}
+
+TEST(DynamicsSettings, EveryBadValueIsRefusedByName) {
+  const json good = json::parse(sceneText(test::sampleScene()));
+  int tried = 0;
+  for (const auto& [key, value] : good["dynamics"].items()) {
+    for (const json& bad : {json("nonsense"), json(-1e20), json(json::array()), json(nullptr)}) {
+      json document = good;
+      document["dynamics"][key] = bad;
+      const auto scene = parseScene(document.dump(), "bad.coif");
+      ASSERT_FALSE(scene.ok()) << key << " " << bad;
+      EXPECT_EQ(scene.error().code, ErrorCode::Malformed);
+      EXPECT_NE(scene.error().place.find("dynamics." + key), std::string::npos) << scene.error().text();
+      ++tried;
+    }
+  }
+  EXPECT_GT(tried, 80);
+}
+
+TEST(SimulateStage, RunsOnceIsReusedAndGoesOn) {
+  const Scene scene = test::sampleScene();
+  Evaluation evaluation(noHead());
+  const auto first = evaluation.simulate(scene, frames(5));
+  ASSERT_TRUE(first.ok()) << first.error().text();
+  EXPECT_EQ((*first)->frameCount(), 5u);
+  // Frame 0 is the placed mesh, in floats.
+  const HairMesh placed = **evaluation.placedMesh(scene);
+  for (std::size_t v = 0; v < placed.vertices().size(); ++v)
+    EXPECT_EQ((*first)->frame(0)[v], placed.vertices()[v].position.cast<float>());
+  evaluation.clearReports();
+  ASSERT_TRUE(evaluation.simulate(scene, frames(4)).ok());
+  EXPECT_EQ(evaluation.reports().back().state, StageState::Reused);
+  const auto longer = evaluation.simulate(scene, frames(8));
+  ASSERT_TRUE(longer.ok());
+  EXPECT_EQ(evaluation.simulationReport()->frames, 3u);  // three more, not eight
+  Evaluation fresh(noHead());
+  EXPECT_EQ(cacheBytes(**fresh.simulate(scene, frames(8))), cacheBytes(**longer));
+  Scene other = scene;
+  other.dynamics.drag += 1;
+  evaluation.clearReports();
+  ASSERT_TRUE(evaluation.simulate(other, frames(4)).ok());
+  EXPECT_EQ(evaluation.reports().back().state, StageState::Ran);
+}
+
+TEST(SimulateStage, ResumesFromAFileWithTheSameBytes) {
+  const Scene scene = test::sampleScene();
+  SimulateOptions what = frames(6);
+  what.cache = folder() / "whole.coifcache";
+  std::filesystem::remove(what.cache);
+  ASSERT_TRUE(Evaluation(noHead()).simulate(scene, what).ok());
+  SimulateOptions part = frames(3);
+  part.cache = folder() / "part.coifcache";
+  std::filesystem::remove(part.cache);
+  ASSERT_TRUE(Evaluation(noHead()).simulate(scene, part).ok());
+  part.frames = 6;
+  Evaluation second(noHead());
+  ASSERT_TRUE(second.simulate(scene, part).ok());
+  EXPECT_EQ(second.simulationReport()->frames, 3u);
+  EXPECT_EQ(readFile(what.cache).value(), readFile(part.cache).value());
+  Scene other = scene;
+  other.dynamics.gravity = 1;
+  const auto refused = Evaluation(noHead()).simulate(other, part);
+  ASSERT_FALSE(refused.ok());  // and the file is as it was
+  EXPECT_EQ(readFile(what.cache).value(), readFile(part.cache).value());
+}
+
+TEST(SimulateStage, StrandsOfAFrameAreThoseOfTheSceneAndTurnWithTheHead) {
+  Scene scene = test::sampleScene();
+  scene.strands.count = 50;
+  scene.dynamics.gravity = 0;
+  Evaluation evaluation(noHead());
+  SimulateOptions what = frames(2);
+  const Mat3 turn = Eigen::AngleAxisd(1, Vec3(0, 1, 0)).toRotationMatrix();
+  what.motion.poses = {{turn, Vec3(3, 0, 0)}};
+  const auto motion = evaluation.simulate(scene, what);
+  ASSERT_TRUE(motion.ok()) << motion.error().text();
+  const auto posed = evaluation.strandsAt(scene, **motion, 0);
+  ASSERT_TRUE(posed.ok()) << posed.error().text();
+  const StrandSet rest = **evaluation.strands(scene);
+  EXPECT_EQ(posed->offsets, rest.offsets);
+  EXPECT_EQ(posed->ids, rest.ids);
+  for (std::size_t p = 0; p < rest.points.size(); ++p) {
+    const Vec3 expected = turn * rest.points[p].cast<double>() + Vec3(3, 0, 0);
+    // Frames are floats: a few units of 1e-7 of the size, through the spline's weights.
+    EXPECT_LE((posed->points[p].cast<double>() - expected).norm(), 1e-5 * (1 + expected.norm()));
+  }
+  EXPECT_FALSE(evaluation.strandsAt(scene, **motion, 2).ok());
+}
+
+TEST(SimulateStage, WritesUsdTimeSamplesAndDrapes) {
+  Scene scene = test::sampleScene();
+  scene.strands.count = 20;
+  Evaluation evaluation(noHead());
+  const auto path = folder() / "motion.usda";
+  const auto written = evaluation.exportMotion(scene, frames(3), path);
+  ASSERT_TRUE(written.ok()) << written.error().text();
+  std::ifstream file(path);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(text.find("points.timeSamples"), std::string::npos);
+  const HairMesh before = scene.hairMesh;
+  const auto draped = evaluation.drape(scene);
+  ASSERT_TRUE(draped.ok()) << draped.error().text();
+  EXPECT_GT(draped->greatestMove, 0);
+  EXPECT_FALSE(scene.hairMesh == before);
+  EXPECT_EQ(scene.placedHash, meshHash(scene.hairMesh));
+}
+
+TEST(Cache, RoundTripsAndRefusesEveryCutAndEveryChangedByte) {
+  DynamicsCache cache;
+  cache.key = 42;
+  cache.framesPerSecond = 30;
+  cache.vertexCount = 2;
+  cache.poses.resize(3);
+  for (int i = 0; i < 6; ++i) cache.positions.push_back(Vec3f(float(i), 1, 2));
+  cache.state.resize(11, std::byte{7});
+  const auto bytes = cacheBytes(cache);
+  const auto again = parseCache(bytes);
+  ASSERT_TRUE(again.ok()) << again.error().text();
+  EXPECT_EQ(cacheBytes(*again), bytes);
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(parseCache(std::span(bytes).first(length)).ok()) << length;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    auto changed = bytes;
+    changed[at] ^= std::byte{0x40};
+    EXPECT_FALSE(parseCache(changed).ok()) << at;
+  }
+  EXPECT_EQ(loadCache(folder() / "none.coifcache").error().code, ErrorCode::NotFound);
+}
+
+}  // namespace
+}  // namespace coif
