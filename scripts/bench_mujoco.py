@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Coif's chains beside MuJoCo and, where it installs, PositionBasedDynamics (pypbd): the same chains in the same
-run, one thread each, time inside the library alone.
+run, one thread each; processor time, so that other work on the machine does not count, of calls that loop inside
+the library.
 
     scripts/bench_mujoco.py [-o FOLDER] [--seconds S]
 
@@ -68,7 +69,7 @@ class CoifChains:
         self.model = coif.Chains(chain_points(chains, links), chains, getattr(coif.DynamicsMethod, method), **options)
 
     def step(self, dt, steps):
-        return self.model.step(dt, steps)
+        self.model.step(dt, steps)
 
     def tips(self):
         return self.model.positions.reshape(self.chains, self.links + 1, 3)[:, -1]
@@ -102,17 +103,21 @@ class MujocoChains:
         mujoco.mj_forward(self.model, self.data)
 
     def step(self, dt, steps):
-        begin = time.perf_counter()
         self.mujoco.mj_step(self.model, self.data, nstep=steps)  # the loop is inside the library
-        return time.perf_counter() - begin
 
     def tips(self):
         self.mujoco.mj_kinematics(self.model, self.data)
         return self.data.site_xpos.copy()
 
 
+def timed(system, dt, steps):
+    begin = time.process_time()
+    system.step(dt, steps)
+    return time.process_time() - begin
+
+
 def measure(make, dt, seconds):
-    """Median seconds a step of fresh runs that last `seconds` in all, and the tips at every 1/24 s of the horizon."""
+    """Median processor seconds a step of fresh runs that last `seconds` in all, and the tips at every 1/24 s of the horizon."""
     import numpy as np
 
     system = make()
@@ -122,7 +127,7 @@ def measure(make, dt, seconds):
         system.step(dt, each)
         tips.append(system.tips())
     system = make()
-    first = system.step(dt, 4) / 4
+    first = timed(system, dt, 4) / 4
     count = max(1, min(each, int(seconds / 5 / max(first, 1e-7))))
     times = []
     spent = 0.0
@@ -130,7 +135,7 @@ def measure(make, dt, seconds):
         if len(times) * count * dt > 0.5:
             system = make()  # always the same half second of motion
             system.step(dt, 4)
-        taken = system.step(dt, count)
+        taken = timed(system, dt, count)
         times.append(taken / count)
         spent += taken
     return float(np.median(times)), np.array(tips)
