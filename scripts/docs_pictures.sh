@@ -10,6 +10,10 @@ for style in bob long bun mohawk pixie; do
   "$BUILD/bin/coif" -q new --scalp build/pictures/head.obj --meters-per-unit 0.01 --style $style -o build/pictures/$style.coif
   "$BUILD/bin/coif" -q render build/pictures/$style.coif -o docs/pictures/style-$style.png --strands 60000 --size 340x340
 done
+say "draping"
+"$BUILD/bin/coif" -q drape build/pictures/long.coif -o build/pictures/draped.coif --seconds 4 --droop 2
+"$BUILD/bin/coif" -q render build/pictures/long.coif -o docs/pictures/drape-before.png --strands 15000 --size 300x300
+"$BUILD/bin/coif" -q render build/pictures/draped.coif -o docs/pictures/drape-after.png --strands 15000 --size 300x300
 for example in examples/[0-9]*.py; do
   say "$example"
   PYTHONPATH=$BUILD/python "$VENV/bin/python" "$example" -o build/pictures --size "${SIZE:-250}"
