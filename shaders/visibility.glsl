@@ -3,13 +3,15 @@
 layout(binding = 0) uniform sampler3D lightVolume;     // optical depth to key, fill, rim; open sky in w
 layout(binding = 1) uniform sampler2D headDepthMap;    // first head surface from the key light
 
-vec4 volumeAt(vec3 p) {
+vec4 volumeIn(sampler3D volume, vec3 p) {
   vec3 c = (p - volumeLo.xyz) * volumeScale.xyz;
-  vec4 inside = texture(lightVolume, c);
+  vec4 inside = texture(volume, c);
   vec3 outside = max(max(-c, c - 1.0), 0.0);
   float away = clamp(8.0 * max(outside.x, max(outside.y, outside.z)), 0.0, 1.0);
   return mix(inside, vec4(0, 0, 0, 1), away);
 }
+
+vec4 volumeAt(vec3 p) { return volumeIn(lightVolume, p); }
 
 // Hair between the key light and p, at a place moved by texels. Half a texel towards the light, so that a hair that
 // leans towards it does not shadow itself.

@@ -34,9 +34,13 @@ void FrameTargets::clear() const {
   glClearTexImage(sum_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
 }
 
-void FrameTargets::begin() const {
+void FrameTargets::bind() const {
   glBindFramebuffer(GL_FRAMEBUFFER, subframe_.name());
   glViewport(0, 0, width_, height_);
+}
+
+void FrameTargets::begin() const {
+  bind();
   glEnable(GL_MULTISAMPLE);
   const float nothing[4] = {0, 0, 0, 0}, farthest = 1;
   glDepthMask(GL_TRUE);

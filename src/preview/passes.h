@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "preview/fibre_tables.h"
 #include "preview/frame_data.h"
 #include "preview/gl_objects.h"
 #include "preview/hair_map.h"
@@ -45,7 +46,7 @@ class ShadowPass {
                                  const VisibilityOptions& options, const CoarseStrands* strands,
                                  const StrandBuffers* lines, const PolygonMesh* head,
                                  const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
-  void bindForHair() const { bind(withHead_); }
+  void bindForHair() const;
   void bindForHead() const { bind(hairOnly_); }
   const HairMap& map() const { return map_; }
 
@@ -58,7 +59,9 @@ class ShadowPass {
 /// Every program and permutation that the room can ask for; a test compiles them all.
 std::vector<ProgramSource> allPermutations();
 ProgramSource headProgram(const VisibilityOptions& visibility);
-ProgramSource strandProgram(const VisibilityOptions& visibility, bool shadows, Topology topology);
+/// `fibre` null: the shading without tables.
+ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
+                           bool multiple);
 
 /// Edges and faces of the hair mesh, one colour a layer.
 class OverlayPass {
@@ -80,6 +83,7 @@ class FrameTargets {
   static Result<FrameTargets> create(int width, int height);
   void clear() const;  ///< the sum of the sub-frames
   void begin() const;  ///< binds and clears the sub-frame
+  void bind() const;   ///< the sub-frame
   void accumulate(const Programs& programs, const VertexArray& empty) const;
   Image finish(const Programs& programs, const VertexArray& empty, int subframes) const;
 

@@ -1,4 +1,4 @@
-#include "preview/passes.h"
+#include "preview/eye_pass.h"
 
 namespace coif::preview {
 
@@ -6,29 +6,42 @@ ProgramSource headProgram(const VisibilityOptions& visibility) {
   return {"head.vert", "head.frag", mapDefines(visibility)};
 }
 
-ProgramSource strandProgram(const VisibilityOptions& visibility, bool shadows, Topology topology) {
-  ProgramSource source{"strand.vert", "strand.frag", {}};
+ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
+                           bool multiple) {
+  ProgramSource source{"strand_shade.comp", "", {}};
   if (shadows) {
     source.defines = mapDefines(visibility);
     source.defines.push_back("SHADOWS");
   }
-  if (topology == Topology::Lines) source.defines.push_back("LINES");
+  source.defines.push_back(fibre == nullptr ? "SHADING_STUDIO"
+                           : multiple       ? "SHADING_DUAL"
+                                            : "SHADING_SINGLE");
+  if (fibre != nullptr && fibre->grey()) source.defines.push_back("GREY");
   return source;
 }
 
 std::vector<ProgramSource> allPermutations() {
   std::vector<ProgramSource> all(allPrograms().begin(), allPrograms().end());
-  const std::vector<ProgramSource> maps = mapPrograms();
-  all.insert(all.end(), maps.begin(), maps.end());
-  for (const std::vector<std::string>& defines : mapQueryPermutations()) {
+  const auto append = [&](const std::vector<ProgramSource>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  append(mapPrograms());
+  append(eyePrograms());
+  std::vector<std::vector<std::string>> lights = mapQueryPermutations();
+  for (std::vector<std::string>& defines : lights) {
     all.push_back({"head.vert", "head.frag", defines});
-    all.push_back({"strand.vert", "strand.frag", defines});
-    all.back().defines.push_back("SHADOWS");
-    all.push_back(all.back());
-    all.back().defines.push_back("LINES");
+    defines.push_back("SHADOWS");
   }
-  all.push_back({"strand.vert", "strand.frag", {}});
-  all.push_back({"strand.vert", "strand.frag", {"LINES"}});
+  lights.push_back({});
+  for (const std::vector<std::string>& defines : lights) {
+    for (const char* shading : {"SHADING_STUDIO", "SHADING_SINGLE", "SHADING_DUAL"}) {
+      ProgramSource source{"strand_shade.comp", "", defines};
+      source.defines.push_back(shading);
+      all.push_back(source);
+      source.defines.push_back("GREY");
+      if (shading != std::string_view("SHADING_STUDIO")) all.push_back(source);
+    }
+  }
   return all;
 }
 

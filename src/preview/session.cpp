@@ -7,12 +7,14 @@ namespace coif {
 PreviewSession::Impl::~Impl() {
   withContext([&] {
     dropHair();
-    headBuffers.reset(), overlayPass.reset(), shadows.reset(), targets.reset();
+    headBuffers.reset(), overlayPass.reset(), shadows.reset(), targets.reset(), fibre.reset();
+    eye.reset();
   });
 }
 
 void PreviewSession::Impl::dropHair() {
   eyeStrands.reset(), shadowStrands.reset(), hairBuffers.reset(), shadows.reset();
+  eyeLines.reset(), cameraMap.reset();
 }
 
 PreviewSession::PreviewSession(PreviewSession&&) noexcept = default;

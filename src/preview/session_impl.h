@@ -4,7 +4,7 @@
 
 #include "coif/preview/session.h"
 #include "preview/device.h"
-#include "preview/passes.h"
+#include "preview/eye_pass.h"
 
 namespace coif {
 
@@ -32,6 +32,11 @@ struct PreviewSession::Impl {
   bool shadowsHaveHair = false;
   VisibilityOptions shadowOptions;
   DetailOptions shadowDetail;  ///< of the strands in the maps
+  std::unique_ptr<FibreTables> fibre;
+  std::unique_ptr<EyePass> eye;
+  std::unique_ptr<StrandBuffers> eyeLines;  ///< OccupancyOrdered's map of the camera
+  bool eyeLinesOld = false;
+  std::unique_ptr<HairMap> cameraMap;
   std::unique_ptr<FrameTargets> targets;
   int targetWidth = 0, targetHeight = 0;
 
@@ -50,7 +55,10 @@ struct PreviewSession::Impl {
                      const Context& context);
   Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
               Picture& picture, const Context& context);
-  void drawSubframe(const PreviewOptions& options) const;
+  Status drawSubframe(const PreviewOptions& options) const;
+  void shade(const PreviewOptions& options, Picture& picture);
+  Status makeEye(const PreviewOptions& options, const View& view, Picture& picture);
+  double leastCoverage(const View& view) const;
   void dropHair();
   /// Runs `action` with the context current; nothing happens where it cannot be.
   template <class Action>

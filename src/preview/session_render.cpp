@@ -141,7 +141,7 @@ void PreviewSession::Impl::upload(Picture& picture) {
   }
   if (hair->model.synthesised && (first || hairMoved)) {
     picture.uploaded.hairMesh = hairBuffers->move(hair->model);
-    eyeOld = shadowOld = true;
+    eyeOld = shadowOld = eyeLinesOld = true;
   }
   hairMoved = false;
   report(picture, "hair", first ? StageState::Ran : StageState::Reused,
@@ -263,6 +263,9 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
   Buffer frameBuffer = makeBuffer(std::span<const FrameData>(&frame, 1), GL_DYNAMIC_STORAGE_BIT);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   COIF_TRY(makeShadows(options, frame, frameBuffer, picture, context));
+  glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);  // with what the maps filled in
+  COIF_TRY(makeEye(options, view, picture));
+  shade(options, picture);
   COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
   COIF_TRY(device->programs->error());
   for (const std::string& warning : device->gl->log().warnings)
@@ -275,7 +278,70 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
   return picture;
 }
 
-void PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
+void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture) {
+  if (!hair) return;
+  constexpr int kMostLookUps = 4;
+  constexpr double kDark = 0.01;  // of the light goes on through a hair: nothing is left after two
+  StageReport& stage = report(picture, "shading", StageState::Ran, "light, hair or camera may have moved");
+  const StageTimer timer(stage, options.measure);
+  const bool tables = options.shading != PreviewShading::Studio;
+  if (tables) {
+    const FibreParameters wanted = fibreOf(options);
+    if (fibre == nullptr || !sameFibre(fibre->fibre(), wanted)) fibre = std::make_unique<FibreTables>(wanted);
+    fibre->bind();
+  }
+  const bool asked = options.shading == PreviewShading::DualScattering;
+  const bool multiple = asked && !(options.leaveOut && fibre->mostForward() < kDark);
+  if (asked && !multiple) stage.notes.push_back("dark hair: no multiple scattering");
+  if (tables && fibre->grey()) stage.notes.push_back("grey hair: one channel");
+  shadows->bindForHair();
+  glUseProgram((*device->programs)(
+      shadeProgram(shadows->map().options(), shadowsHaveHair, tables ? fibre.get() : nullptr, multiple)));
+  glUniform1i(1, std::min(options.subframes, kMostLookUps));
+  eyeStrands->dispatchPoints();
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& view, Picture& picture) {
+  if (!hair) return {};
+  PreviewTransparency method = options.transparency;
+  if (options.leaveOut && method != PreviewTransparency::Opaque && leastCoverage(view) >= 1) {
+    method = PreviewTransparency::Opaque;
+    report(picture, "transparency", StageState::Skipped,
+           "every hair is wider than a pixel: the depth buffer decides");
+  }
+  if (eye == nullptr || eye->method() != method || targetWidth != options.width ||
+      targetHeight != options.height) {
+    eye.reset();
+    COIF_ASSIGN(EyePass made, EyePass::create(method, options.width, options.height));
+    eye = std::make_unique<EyePass>(std::move(made));
+  }
+  cameraMap.reset();
+  if (method != PreviewTransparency::OccupancyOrdered) return {};
+  follow(eyeLines, eyeLinesOld, eyeStrands->plan(), "strands for the camera's map", options.keep,
+         options.measure, hair->model, *hairBuffers, *device->programs, Topology::Segments, picture);
+  StageReport& stage = report(picture, "camera's map", StageState::Ran, "every picture");
+  const StageTimer timer(stage, options.measure);
+  VisibilityOptions occupancy;
+  occupancy.method = VisibilityMethod::Occupancy;
+  COIF_ASSIGN(HairMap map,
+              HairMap::make(*device->programs, eyeLines.get(), viewOfCamera(view), 1, occupancy));
+  cameraMap = std::make_unique<HairMap>(std::move(map));
+  stage.bytes = cameraMap->bytes();
+  return {};
+}
+
+// Of a pixel by the thinnest of the coarse strands' points, without the ribbon's own widening.
+double PreviewSession::Impl::leastCoverage(const View& view) const {
+  double least = INFINITY;
+  const CoarseStrands& coarse = hair->model.coarse;
+  for (const CoarseStrands::Point& p : coarse.points) {
+    least = std::min(least, double(p.width) / view.pixelAt(p.position.cast<double>()));
+  }
+  return least * eyeStrands->plan().widthScale / std::max(coarse.scale, 1e-300);
+}
+
+Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
   const Programs& programs = *device->programs;
   targets->begin();
   if (!options.transparentBackground) {
@@ -290,13 +356,11 @@ void PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
     headBuffers->draw();
   }
   if (hair) {
-    shadows->bindForHair();
-    glUseProgram(
-        programs(strandProgram(shadows->map().options(), options.shadows, eyeStrands->topology())));
-    eyeStrands->draw();
+    COIF_TRY(eye->draw({programs, *eyeStrands, headBuffers.get(), cameraMap.get(), *targets, device->empty}));
   }
   if (overlayPass != nullptr) overlayPass->draw(programs);
   targets->accumulate(programs, device->empty);
+  return {};
 }
 
 Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& view, FrameData& frame,
@@ -315,7 +379,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
     frame.viewport.z() = float(k);
     glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-    drawSubframe(options);
+    COIF_TRY(drawSubframe(options));
     context.report("picture", double(k + 1) / options.subframes);
   }
   picture.image = targets->finish(*device->programs, device->empty, options.subframes);

@@ -101,6 +101,11 @@ Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& v
   return pass;
 }
 
+void ShadowPass::bindForHair() const {
+  bind(withHead_);
+  glBindTextureUnit(7, hairOnly_.name());
+}
+
 void ShadowPass::bind(const Texture& volume) const {
   map_.bind();
   glBindTextureUnit(0, volume.name());

@@ -7,9 +7,9 @@
 namespace coif::preview {
 namespace {
 
-constexpr std::size_t kPackedPoint = 32, kColumnSample = 32;  // bytes, as shaders/ have them
+constexpr std::size_t kPackedPoint = 32, kColumnSample = 32, kShade = 8;  // bytes, as shaders/ have them
 constexpr std::size_t kAlign =
-    8;  // points: a batch starts at a multiple of 256 bytes, enough for every driver
+    32;  // points: a batch starts at a multiple of 256 bytes, enough for every driver
 constexpr GLuint kGroup = 64, kMostGroups = 32768;
 
 void bind(GLuint binding, const Buffer& buffer) {
@@ -106,6 +106,7 @@ StrandBuffers::StrandBuffers(const HairModel& model, const HairBuffers& hair, co
   parameters_ = makeBuffer(std::span<const float>(plan_.parameters));
   columns_ = emptyBuffer(plan_.columns * kColumnSample);
   points_ = emptyBuffer(points * kPackedPoint);
+  if (topology_ != Topology::Segments) shades_ = emptyBuffer(points * kShade);
   indices_ = emptyBuffer(indices * 4);
   bytes_ = points * kPackedPoint + indices * 4;
   glVertexArrayElementBuffer(array_.name(), indices_.name());
@@ -151,6 +152,15 @@ GLsizei StrandBuffers::indexCount(const Batch& batch) const {
   return GLsizei(width * batch.points + (topology_ == Topology::Segments ? 0 : batch.strands));
 }
 
+void StrandBuffers::bindBatch(std::size_t b) const {
+  const auto range = [&](GLuint binding, const Buffer& buffer, std::size_t size) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer.name(), GLintptr(pointOffsets_[b] * size),
+                      GLsizeiptr(plan_.batches[b].points * size));
+  };
+  range(0, points_, kPackedPoint);
+  if (shades_.name() != 0) range(4, shades_, kShade);
+}
+
 void StrandBuffers::draw() const {
   if (plan_.points == 0) return;
   constexpr GLenum kModes[] = {GL_TRIANGLE_STRIP, GL_LINE_STRIP, GL_LINES};
@@ -158,8 +168,7 @@ void StrandBuffers::draw() const {
   glBindVertexArray(array_.name());
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     const Batch& batch = plan_.batches[b];
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
-                      GLsizeiptr(batch.points * kPackedPoint));
+    bindBatch(b);
     glDrawElements(kModes[int(topology_)], indexCount(batch), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(indexOffsets_[b] * 4));
   }
@@ -169,8 +178,7 @@ void StrandBuffers::draw() const {
 void StrandBuffers::dispatchPoints() const {
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     const Batch& batch = plan_.batches[b];
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
-                      GLsizeiptr(batch.points * kPackedPoint));
+    bindBatch(b);
     glUniform1ui(0, batch.points);
     dispatch((batch.points + kGroup - 1) / kGroup);
   }

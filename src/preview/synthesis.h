@@ -37,7 +37,8 @@ class StrandBuffers {
   /// All strips, with the bound program. Vertex v is side v & 1 of point v >> 1 of a ribbon, or point v of a
   /// line, or end v & 1 of the segment that ends in point v >> 1.
   void draw() const;
-  /// One invocation of the bound program a point, batch after batch: points at binding 0, their number at location 0.
+  /// One invocation of the bound program a point, batch after batch: points at binding 0, their light at
+  /// binding 4 (not of segments), their number at location 0.
   void dispatchPoints() const;
   Topology topology() const { return topology_; }
   const DetailPlan& plan() const { return plan_; }
@@ -56,13 +57,14 @@ class StrandBuffers {
  private:
   void makeColumns(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
 
+  void bindBatch(std::size_t batch) const;
   GLsizei indexCount(const Batch& batch) const;
 
   DetailPlan plan_;
   Topology topology_ = Topology::Ribbons;
   std::size_t bytes_ = 0;
   std::vector<std::size_t> pointOffsets_, indexOffsets_;  ///< of batches, in points and indices
-  Buffer shares_, parameters_, columns_, points_, indices_;
+  Buffer shares_, parameters_, columns_, points_, shades_, indices_;
   VertexArray array_;
 };
 

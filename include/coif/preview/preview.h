@@ -14,6 +14,7 @@
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/light/camera.h"
+#include "coif/light/fibre.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
 #include "coif/light/visibility.h"
@@ -35,6 +36,25 @@ struct PreviewScene {
   Lights lights;
 };
 
+/// How a hair scatters light.
+enum class PreviewShading {
+  Studio,          ///< soft lobes by eye; hair colours as they are, each hair a little different
+  KajiyaKay,       ///< light's function of that name
+  Marschner,       ///< light's Marschner or Chiang, by `fibre.model`; light through hair is only lost
+  DualScattering,  ///< the same with multiple scattering (Zinke et al. 2008)
+};
+
+/// What covers a pixel in part. All but the first keep a hair's coverage, width over pixel.
+enum class PreviewTransparency {
+  Opaque,            ///< as if at least a pixel wide: the depth buffer alone
+  Stochastic,        ///< a random part of the samples, right on average
+  AlphaToCoverage,   ///< the driver's choice of samples
+  WeightedAverage,   ///< mean colour by coverage, exact transmittance: no order at all
+  OccupancyOrdered,  ///< weighted by what an occupancy map of the camera says is in front (Sintorn &
+                     ///< Assarsson)
+  ExactLists,        ///< all fragments of a pixel, sorted: the truth, and as much memory as that takes
+};
+
 /// Deep opacity maps of seven layers, filtered. The GPU's versions have at most 256 slices and 16 layers, 4
 /// clusters, 128 occupancy slices in 4 slabs; LightMap takes the grid that fill and rim light have.
 inline VisibilityOptions previewVisibility() {
@@ -50,6 +70,11 @@ struct PreviewOptions {
   Vec3f headColor = Vec3f(0.50f, 0.40f, 0.34f);
   Vec3f backgroundTop = Vec3f(0.135f, 0.145f, 0.165f), backgroundBottom = Vec3f(0.03f, 0.032f, 0.037f);
   bool transparentBackground = false;  ///< alpha is then the coverage
+  PreviewShading shading = PreviewShading::Studio;
+  FibreParameters fibre;       ///< of all shadings but Studio
+  bool useAbsorption = false;  ///< take fibre.absorption; else hairColor is the colour that dense hair takes
+  PreviewTransparency transparency = PreviewTransparency::Stochastic;
+  bool leaveOut = true;  ///< skip what cannot be seen in this scene; said in the picture's stages and notes
   bool shadows = true;
   VisibilityOptions visibility = previewVisibility();  ///< of the key light; `opaque` is the scene's head
   bool lod = true;  ///< fewer, wider strands and fewer points where no one could tell

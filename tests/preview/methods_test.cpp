@@ -1,0 +1,131 @@
+// Every way of shading, of shadows and of treating partial coverage gives a picture that can be true.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "coif/base/random.h"
+#include "preview_fixture.h"
+
+namespace coif {
+namespace {
+
+using testing::addStrand;
+using Methods = testing::PreviewTest;
+
+StrandSet tuft(std::size_t count, float width) {
+  StrandSet strands;
+  for (std::size_t s = 0; s < count; ++s) {
+    const CounterRandom random(3, s);
+    const Vec3f root(float(random.uniform(0)) - 0.5f, float(random.uniform(1)) * 0.2f,
+                     float(random.uniform(2)) - 0.5f);
+    const Vec3f lean(0.2f * float(random.uniform(3)), 0.3f, 0.1f);
+    addStrand(strands, {root, root + lean, root + 2.0f * lean + Vec3f(0.1f, 0, 0)}, width);
+  }
+  return strands;
+}
+
+PreviewScene sceneOf(const StrandSet& strands) {
+  PreviewScene scene;
+  scene.strands = &strands;
+  scene.camera = frameBox({Vec3(-0.6, 0, -0.6), Vec3(0.8, 1, 0.8)}, UpAxis::Y, 20, 10);
+  return scene;
+}
+
+double meanColor(const Image& image) {
+  double sum = 0, weight = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const double a = image.rgba[i + 3];
+    sum += a * (image.rgba[i] + image.rgba[i + 1] + image.rgba[i + 2]) / 3;
+    weight += a;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+// Pixels with hair that are black, or far brighter than all around them.
+int speckles(const Image& image) {
+  const auto at = [&](int x, int y) { return &image.rgba[4 * std::size_t(y * image.width + x)]; };
+  const auto light = [&](int x, int y) { return at(x, y)[0] + at(x, y)[1] + at(x, y)[2]; };
+  int count = 0;
+  for (int y = 1; y + 1 < image.height; ++y) {
+    for (int x = 1; x + 1 < image.width; ++x) {
+      if (at(x, y)[3] < 128) continue;
+      int brightest = 0;
+      for (int k = 0; k < 9; ++k) {
+        const int dx = k % 3 - 1, dy = k / 3 - 1;
+        if ((dx != 0 || dy != 0) && at(x + dx, y + dy)[3] > 64)
+          brightest = std::max(brightest, light(x + dx, y + dy));
+      }
+      if (light(x, y) == 0 || (brightest > 0 && light(x, y) > 6 * brightest + 60)) ++count;
+    }
+  }
+  return count;
+}
+
+TEST_F(Methods, EveryTransparencyCoversAndColoursAsTheSortedListsDo) {
+  const StrandSet strands = tuft(3000, 0.004f);
+  PreviewOptions options = small(160, 16);
+  options.transparency = PreviewTransparency::ExactLists;
+  const Image truth = render(sceneOf(strands), options).image;
+  ASSERT_GT(alphaSum(truth), 1000);
+  for (const PreviewTransparency method :
+       {PreviewTransparency::Stochastic, PreviewTransparency::AlphaToCoverage,
+        PreviewTransparency::WeightedAverage, PreviewTransparency::OccupancyOrdered}) {
+    options.transparency = method;
+    const Image image = render(sceneOf(strands), options).image;
+    // How alpha to coverage rounds is the driver's: one that rounds down loses half a sample of four a
+    // fragment.
+    const bool drivers = method == PreviewTransparency::AlphaToCoverage;
+    EXPECT_NEAR(alphaSum(image) / alphaSum(truth), 1, drivers ? 0.5 : 0.02) << int(method);
+    // The weighted average knows no order; samples are compressed before their mean is taken (resolve.frag).
+    EXPECT_NEAR(meanColor(image) / meanColor(truth), 1, 0.15) << int(method);
+    EXPECT_EQ(speckles(image), 0) << int(method);
+  }
+}
+
+TEST_F(Methods, EveryShadingAndShadowIsFreeOfSpeckle) {
+  const StrandSet strands = tuft(3000, 0.006f);
+  for (const PreviewShading shading : {PreviewShading::Studio, PreviewShading::KajiyaKay,
+                                       PreviewShading::Marschner, PreviewShading::DualScattering}) {
+    for (const VisibilityMethod method :
+         {VisibilityMethod::None, VisibilityMethod::Opacity, VisibilityMethod::DensityClustering,
+          VisibilityMethod::LightMap, VisibilityMethod::DeepOpacity, VisibilityMethod::Occupancy,
+          VisibilityMethod::Exact}) {
+      PreviewOptions options = small(96, 2);
+      options.shading = shading;
+      options.hairColor = Vec3f(0.6f, 0.4f, 0.2f);
+      options.visibility.method = method;
+      options.visibility.slices = 32;
+      const Image image = render(sceneOf(strands), options).image;
+      EXPECT_GT(alphaSum(image), 500);
+      EXPECT_GT(meanColor(image), 2) << int(shading) << " " << int(method);
+      EXPECT_EQ(speckles(image), 0) << int(shading) << " " << int(method);
+    }
+  }
+}
+
+TEST_F(Methods, ExtremeHairLeavesNoBlackPixel) {
+  StrandSet one, line, tiny, inside;
+  addStrand(one, {Vec3f(-0.4f, 0.2f, 0), Vec3f(0.4f, 0.5f, 0)}, 0.02f);
+  for (int i = 0; i < 500; ++i) addStrand(line, {Vec3f(0, 0.5f, -0.5f), Vec3f(0, 0.5f, 0.5f)}, 0.02f);
+  for (int i = 0; i < 500; ++i) addStrand(tiny, {Vec3f(-0.4f, 0.01f * i, 0), Vec3f(0.4f, 0.3f, 0)}, 1e-8f);
+  addStrand(inside, {Vec3f(-50, 0.5f, 0), Vec3f(50, 0.5f, 0.1f)}, 0.05f);
+  addStrand(inside, {Vec3f(0, -50, 0), Vec3f(0.1f, 50, 0)}, 0.05f);
+  for (const StrandSet* strands : {&one, &line, &tiny, &inside}) {
+    for (const PreviewTransparency transparency :
+         {PreviewTransparency::Opaque, PreviewTransparency::WeightedAverage,
+          PreviewTransparency::OccupancyOrdered, PreviewTransparency::ExactLists}) {
+      PreviewOptions options = small(64, 1);
+      options.shading = PreviewShading::DualScattering;
+      options.transparency = transparency;
+      const Image image = render(sceneOf(*strands), options).image;
+      // The sky lights every hair, so black is what a value that is not a number leaves behind.
+      for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const std::uint8_t* p = &image.rgba[i];
+        ASSERT_TRUE(p[3] <= 8 || p[0] + p[1] + p[2] > 0) << int(transparency);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace coif
