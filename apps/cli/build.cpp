@@ -1,7 +1,4 @@
 // coif build: a scene's strands, written to files.
-#include <iostream>
-
-#include "coif/io/safe_file.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 #include "scene_options.h"
@@ -17,12 +14,6 @@ struct BuildArguments {
   EvaluateArguments evaluate;
   std::string meshKind = "cards";
 };
-
-Status writeReport(const Evaluation& evaluation, const std::string& path) {
-  COIF_ASSIGN(auto file, SafeFile::create(path));
-  file.write(reportJson(evaluation.reports()));
-  return file.commit();
-}
 
 Status build(const BuildArguments& arguments, Session& session) {
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
@@ -40,9 +31,7 @@ Status build(const BuildArguments& arguments, Session& session) {
     files.push_back({{"file", output}, {"bytes", written.bytes}, {"notes", written.notes}});
     session.say("wrote " + output);
   }
-  if (arguments.evaluate.explain && !session.json) std::cout << explainText(evaluation.reports());
-  if (!arguments.evaluate.reportFile.empty())
-    COIF_TRY(writeReport(evaluation, arguments.evaluate.reportFile));
+  COIF_TRY(arguments.evaluate.tell(evaluation.reports(), session));
   nlohmann::ordered_json result = nlohmann::ordered_json::parse(reportJson(evaluation.reports()));
   result["strands"] = strands->strandCount();
   result["points"] = strands->pointCount();

@@ -1,51 +1,25 @@
-// coif render: a picture of a scene.
+// coif render: pictures of a scene.
 #include "command.h"
 
 #ifdef COIF_WITH_PREVIEW
-#include <iostream>
+#include <filesystem>
 
 #include "coif/io/safe_file.h"
-#include "coif/preview/preview.h"
+#include "coif/light/path_tracer.h"
+#include "coif/preview/session.h"
 #include "coif/scene/evaluate.h"
+#include "render_options.h"
 #include "scene_options.h"
 
 namespace coif::cli {
 
 namespace {
 
-struct RenderArguments {
-  std::string scene, output, size = "1024x1024", camera, lod = "auto";
-  std::vector<float> color;
+struct Arguments {
+  RenderArguments render;
   StrandArguments strands;
   EvaluateArguments evaluate;
-  bool hairMesh = false, noStrands = false, noShadows = false, noLod = false, transparent = false;
 };
-
-bool parseSize(const std::string& text, int& width, int& height) {
-  int used = 0;
-  return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 && used == int(text.size()) &&
-         width >= 1 && height >= 1 && width <= 8192 && height <= 8192;
-}
-
-bool parseAngles(const std::string& text, double& azimuth, double& elevation) {
-  int used = 0;
-  return std::sscanf(text.c_str(), "%lf,%lf%n", &azimuth, &elevation, &used) == 2 &&
-         used == int(text.size()) && std::abs(azimuth) <= 1e6 && std::abs(elevation) <= 90;
-}
-
-std::string checkSize(const std::string& text) {
-  int width, height;
-  return parseSize(text, width, height)
-             ? ""
-             : "--size wants WIDTHxHEIGHT from 1x1 to 8192x8192, not '" + text + "'";
-}
-
-std::string checkCamera(const std::string& text) {
-  double azimuth, elevation;
-  return parseAngles(text, azimuth, elevation)
-             ? ""
-             : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
-}
 
 /// Frames the hair and the face below it, not a whole body. Hair fills no corner of its box, so the box is
 /// drawn in.
@@ -69,91 +43,173 @@ Box framed(const StrandSet* strands, const HairMesh& mesh, UpAxis upAxis) {
   return box;
 }
 
-/// "auto", "off" or a part of the strands.
-bool parseLod(const std::string& text, PreviewOptions& options) {
-  if (text == "auto") return true;
-  if (text == "off") return options.lod = false, true;
-  int used = 0;
-  return std::sscanf(text.c_str(), "%lf%n", &options.strandFraction, &used) == 1 &&
-         used == int(text.size()) && options.strandFraction > 0 && options.strandFraction <= 1;
-}
+/// What is in the picture, evaluated once for all of its views.
+struct Subject {
+  const StrandSet* strands = nullptr;
+  const HairMesh* mesh = nullptr;
+  const PolygonMesh* head = nullptr;
+};
 
-std::string checkLod(const std::string& text) {
-  PreviewOptions options;
-  return parseLod(text, options)
-             ? ""
-             : "--lod wants 'auto', 'off' or a part of the strands above 0 and up to 1, not '" + text + "'";
-}
-
-Status render(const RenderArguments& arguments, Session& session) {
-  COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
-  arguments.strands.apply(scene);
-  Evaluation evaluation(arguments.evaluate.options());
-  const Context context = session.context();
-  PreviewScene shown;
+Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, Evaluation& evaluation,
+                          const Context& context) {
+  Subject subject;
   if (!arguments.noStrands) {
-    COIF_ASSIGN(shown.strands, evaluation.strands(scene, context));
+    COIF_ASSIGN(subject.strands, evaluation.strands(scene, context));
   }
-  COIF_ASSIGN(const HairMesh* mesh, evaluation.placedMesh(scene, context));
-  if (arguments.hairMesh) shown.hairMesh = mesh;
+  COIF_ASSIGN(subject.mesh, evaluation.placedMesh(scene, context));
   COIF_ASSIGN(const Surface* head, evaluation.head(scene, context));
-  if (head) shown.head = &head->mesh();
+  if (head) subject.head = &head->mesh();
+  return subject;
+}
+
+Status write(const std::string& path, const Image& image, const FloatImage& linear) {
+  const bool exr = std::filesystem::path(path).extension() == ".exr";
+  COIF_ASSIGN(const auto bytes, exr ? encodeExr(linear) : encodePng(image));
+  COIF_ASSIGN(auto file, SafeFile::create(path));
+  file.write(bytes);
+  return file.commit();
+}
+
+PreviewOptions previewOptions(const RenderArguments& arguments, const Scene& scene) {
   PreviewOptions options;
-  parseSize(arguments.size, options.width, options.height);
-  options.hairColor = arguments.color.size() == 3
-                          ? Vec3f(arguments.color[0], arguments.color[1], arguments.color[2])
-                          : scene.look.hairColor;
+  options.width = arguments.width(), options.height = arguments.height();
+  options.hairColor = arguments.hairColor(scene);
   options.shadows = !arguments.noShadows;
-  parseLod(arguments.lod, options);
-  if (arguments.noLod) options.lod = false;
+  options.visibility = arguments.visibilityOptions();
+  options.lod = arguments.lod != "off";
+  options.strandFraction = arguments.strandFraction();
   options.transparentBackground = arguments.transparent;
-  double azimuth = scene.look.azimuthDeg, elevation = scene.look.elevationDeg;
-  if (!arguments.camera.empty()) parseAngles(arguments.camera, azimuth, elevation);
-  shown.camera = frameBox(framed(shown.strands, *mesh, scene.upAxis), scene.upAxis, azimuth, elevation,
-                          double(options.width) / options.height);
-  COIF_ASSIGN(Preview preview, Preview::create());
-  COIF_ASSIGN(const Picture picture, preview.render(shown, options, context));
-  COIF_ASSIGN(const auto png, encodePng(picture.image));
-  COIF_ASSIGN(auto file, SafeFile::create(arguments.output));
-  file.write(png);
-  COIF_TRY(file.commit());
-  session.say("wrote " + arguments.output + " with " + preview.renderer());
+  return options;
+}
+
+using Json = nlohmann::ordered_json;
+
+/// One view after the other, on a session that keeps what did not change.
+class PreviewRenderer {
+ public:
+  static Result<PreviewRenderer> create(const Subject& subject, const Scene& scene,
+                                        const RenderArguments& arguments, const Context& context) {
+    COIF_ASSIGN(Preview preview, Preview::create());
+    PreviewRenderer made(std::move(preview));
+    // Points that grow() made on this mesh are made again on the GPU; anything else comes as it is.
+    if (subject.strands && scene.strands.tolerance <= 0) {
+      COIF_TRY(made.session_.setHair(*subject.mesh, *subject.strands, scene.strands.knots,
+                                     scene.strands.points, context));
+    } else if (subject.strands) {
+      COIF_TRY(made.session_.setStrands(*subject.strands, context));
+    }
+    if (subject.head) COIF_TRY(made.session_.setHead(*subject.head));
+    if (arguments.hairMesh) made.session_.setOverlay(*subject.mesh);
+    made.session_.setLights(arguments.lights());
+    made.options_ = previewOptions(arguments, scene);
+    return made;
+  }
+
+  Result<Json> render(const Camera& camera, const std::string& path, const Context& context,
+                      Session& session) {
+    session_.setCamera(camera);
+    COIF_ASSIGN(const Picture picture, session_.render(options_, context));
+    COIF_TRY(write(path, picture.image, toLinear(picture.image)));
+    session.say("wrote " + path + " with " + preview_.renderer());
+    for (const std::string& note : picture.notes) session.say("  " + note);
+    stages.insert(stages.end(), picture.stages.begin(), picture.stages.end());
+    return Json{{"picture", path},
+                {"renderer", preview_.renderer()},
+                {"seconds", picture.seconds},
+                {"strandsDrawn", picture.strandsDrawn},
+                {"segmentsDrawn", picture.segmentsDrawn},
+                {"widthScale", picture.widthScale},
+                {"notes", picture.notes}};
+  }
+
+  std::vector<StageReport> stages;
+
+ private:
+  explicit PreviewRenderer(Preview preview) : preview_(std::move(preview)), session_(preview_) {}
+  Preview preview_;
+  PreviewSession session_;
+  PreviewOptions options_;
+};
+
+Result<Json> tracePicture(const Subject& subject, const Scene& scene, const RenderArguments& arguments,
+                          const Camera& camera, const std::string& path, const Context& context,
+                          Session& session) {
+  PathTraceScene traced;
+  traced.strands = subject.strands;
+  traced.head = subject.head;
+  traced.camera = camera;
+  traced.lights = arguments.lights();
+  traced.fibre = arguments.fibre(scene);
+  PathTraceOptions options;
+  options.width = arguments.width(), options.height = arguments.height();
+  options.samplesPerPixel = arguments.samplesPerPixel;
+  options.targetError = arguments.targetError;
+  options.seed = scene.strands.seed;
+  COIF_ASSIGN(const PathTracePicture picture, pathTrace(traced, options, context));
+  const PreviewOptions look = previewOptions(arguments, scene);
+  const FloatImage seen = arguments.transparent
+                              ? picture.image
+                              : overBackdrop(picture.image, look.backgroundTop, look.backgroundBottom);
+  COIF_TRY(write(path, toSrgb(seen), seen));
+  char error[96];
+  std::snprintf(error, sizeof error, ": %d samples a pixel, relative error of a pixel %.3g",
+                picture.samplesPerPixel, picture.relativeError);
+  session.say("wrote " + path + error);
   for (const std::string& note : picture.notes) session.say("  " + note);
-  if (arguments.evaluate.explain && !session.json) std::cout << explainText(evaluation.reports());
-  session.finish({{"picture", arguments.output},
-                  {"renderer", preview.renderer()},
-                  {"seconds", picture.seconds},
-                  {"strandsDrawn", picture.strandsDrawn},
-                  {"segmentsDrawn", picture.segmentsDrawn},
-                  {"widthScale", picture.widthScale},
-                  {"notes", picture.notes}});
+  const auto list = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
+  return Json{{"picture", path},
+              {"renderer", "path tracer"},
+              {"seconds", picture.seconds},
+              {"samplesPerPixel", picture.samplesPerPixel},
+              {"rays", picture.rays},
+              {"mean", list(picture.mean)},
+              {"confidence95", list(picture.confidence95)},
+              {"relativeError", picture.relativeError},
+              {"notes", picture.notes}};
+}
+
+Status render(const Arguments& all, Session& session) {
+  const RenderArguments& arguments = all.render;
+  COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
+  all.strands.apply(scene);
+  Evaluation evaluation(all.evaluate.options());
+  const Context context = session.context();
+  COIF_ASSIGN(const Subject subject, subjectOf(scene, arguments, evaluation, context));
+  std::optional<PreviewRenderer> preview;
+  if (!arguments.pathTraced()) {
+    COIF_ASSIGN(PreviewRenderer made, PreviewRenderer::create(subject, scene, arguments, context));
+    preview.emplace(std::move(made));
+  }
+  const Box box = framed(subject.strands, *subject.mesh, scene.upAxis);
+  const CameraAngles from = cameraAngles(arguments, scene);
+  const int pictures = std::max(arguments.turntable, 1);
+  Json results = Json::array();
+  for (int k = 0; k < pictures; ++k) {
+    const Camera camera = frameBox(box, scene.upAxis, from.azimuthDeg + 360.0 * k / pictures,
+                                   from.elevationDeg, double(arguments.width()) / arguments.height());
+    const std::string path = numberedPath(arguments.output, k + 1, arguments.turntable);
+    COIF_ASSIGN(Json result, preview
+                                 ? preview->render(camera, path, context, session)
+                                 : tracePicture(subject, scene, arguments, camera, path, context, session));
+    results.push_back(std::move(result));
+  }
+  std::vector<StageReport> stages = evaluation.reports();
+  if (preview) stages.insert(stages.end(), preview->stages.begin(), preview->stages.end());
+  COIF_TRY(all.evaluate.tell(stages, session));
+  session.finish(arguments.turntable > 0 ? Json{{"pictures", results}} : results.front());
   return {};
 }
 
 }  // namespace
 
 void addRender(CLI::App& app, Session& session) {
-  auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* command = app.add_subcommand("render", "Make a picture of a scene");
-  command->footer("Example:\n  coif render bob.coif -o bob.png --size 1024x1024 --camera 30,8\n");
-  command->add_option("scene", arguments->scene, "The scene, a .coif file")->required();
-  command->add_option("-o,--output", arguments->output, "The PNG file to write")->required();
-  command->add_option("--size", arguments->size, "Pixels, WIDTHxHEIGHT")
-      ->check(CLI::Validator(checkSize, "WxH"));
-  command->add_option("--camera", arguments->camera, "Azimuth and elevation in degrees; 0,0 looks along -z")
-      ->check(CLI::Validator(checkCamera, "AZ,EL"));
-  command->add_option("--color", arguments->color, "Hair colour, linear R G B from 0 to 1")
-      ->expected(3)
-      ->check(CLI::Range(0.0f, 1.0f));
-  command->add_flag("--hair-mesh", arguments->hairMesh, "Draw the hair mesh over the picture");
-  command->add_flag("--no-strands", arguments->noStrands, "Leave the strands out");
-  command->add_flag("--no-shadows", arguments->noShadows, "Leave the shadow pass out");
-  command
-      ->add_option("--lod", arguments->lod,
-                   "Strands to draw: auto (by their width on the screen), a part from 0 to 1, or off")
-      ->check(CLI::Validator(checkLod, "auto|F|off"));
-  command->add_flag("--no-lod", arguments->noLod, "Draw every strand and every point: --lod off");
-  command->add_flag("--transparent", arguments->transparent, "Transparent background");
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("render", "Make pictures of a scene");
+  command->footer(
+      "Example:\n  coif render bob.coif -o bob.png --size 1024x1024 --camera 30,8 --hair brown\n"
+      "  coif render bob.coif -o truth.exr --shading path-traced --spp 256\n"
+      "  coif render bob.coif -o turn.png --turntable 36\n");
+  arguments->render.addTo(*command);
   arguments->strands.addTo(*command);
   arguments->evaluate.addTo(*command);
   command->callback([arguments, &session] {

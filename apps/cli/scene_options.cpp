@@ -1,5 +1,9 @@
 #include "scene_options.h"
 
+#include <iostream>
+
+#include "coif/io/safe_file.h"
+
 namespace coif::cli {
 
 void StrandArguments::addTo(CLI::App& command) {
@@ -41,6 +45,14 @@ EvaluateOptions EvaluateArguments::options() const {
   out.useHead = !noHead;
   out.force.insert(force.begin(), force.end());
   return out;
+}
+
+Status EvaluateArguments::tell(const std::vector<StageReport>& stages, const Session& session) const {
+  if (explain && !session.json) std::cout << explainText(stages);
+  if (reportFile.empty()) return {};
+  COIF_ASSIGN(auto file, SafeFile::create(reportFile));
+  file.write(reportJson(stages));
+  return file.commit();
 }
 
 }  // namespace coif::cli

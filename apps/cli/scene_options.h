@@ -28,6 +28,8 @@ struct EvaluateArguments {
 
   void addTo(CLI::App& command);
   EvaluateOptions options() const;
+  /// What --explain and --report ask for.
+  Status tell(const std::vector<StageReport>& stages, const Session& session) const;
 };
 
 }  // namespace coif::cli

@@ -48,6 +48,22 @@ double srgbFromLinear(double value) {
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
 }
 
+FloatImage overBackdrop(const FloatImage& image, const Vec3f& top, const Vec3f& bottom) {
+  FloatImage out = image;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double u = (x + 0.5) / image.width, v = 1 - (y + 0.5) / image.height;
+      const double dx = (u - 0.5) * image.width / image.height, dy = v - 0.55;
+      const double s = std::clamp(0.35 * v + 0.65 * std::exp(-2.8 * (dx * dx + dy * dy)), 0.0, 1.0);
+      const float t = float(s * s * (3 - 2 * s));
+      float* pixel = out.at(x, y);
+      for (int c = 0; c < 3; ++c) pixel[c] += (1 - pixel[3]) * (bottom[c] + t * (top[c] - bottom[c]));
+      pixel[3] = 1;
+    }
+  }
+  return out;
+}
+
 Image toSrgb(const FloatImage& image) {
   if (!validate(image).ok()) return {};
   Image result{image.width, image.height, std::vector<std::uint8_t>(image.rgba.size())};

@@ -210,6 +210,21 @@ TEST_F(Rendering, ACameraInsideTheHairIsFine) {
   EXPECT_GT(alphaSum(render(scene, small()).image), 500);
 }
 
+TEST_F(Rendering, TheBackdropIsTheOneThatTracedPicturesGet) {
+  PreviewOptions options = small(96, 1);
+  options.height = 64;
+  options.transparentBackground = false;
+  const Image drawn = render({}, options).image;
+  const FloatImage nothing(options.width, options.height);
+  const Image expected = toSrgb(overBackdrop(nothing, options.backgroundTop, options.backgroundBottom));
+  int worst = 0;
+  for (std::size_t i = 0; i < drawn.rgba.size(); ++i) {
+    worst = std::max(worst, std::abs(int(drawn.rgba[i]) - int(expected.rgba[i])));
+  }
+  // The preview rounds its sum of samples to half floats before it becomes bytes, and may dither by one step.
+  EXPECT_LE(worst, 2);
+}
+
 TEST_F(Rendering, RefusesWhatItCannotDraw) {
   PreviewScene scene;
   PreviewOptions options = small();

@@ -50,7 +50,9 @@ def test_version_and_help():
 
 @pytest.mark.parametrize("arguments", [
     [], ["no-such-command"], ["build"], ["new", "--style", "beehive", "--scalp", "x.obj", "-o", "x.coif"],
-    ["render", "x.coif", "-o", "x.png", "--size", "big"], ["build", "x.coif", "-o", "x.usdc", "--points", "1"],
+    ["render", "x.coif", "-o", "x.png", "--size", "big"], ["render", "x.coif", "-o", "x.jpg"],
+    ["render", "x.coif", "-o", "x.png", "--lod", "2"], ["render", "x.coif", "-o", "x.png", "--light", "up"],
+    ["render", "x.coif", "-o", "x.png", "--hair", "green"], ["build", "x.coif", "-o", "x.usdc", "--points", "1"],
     ["build", "x.coif", "-o", "x.usdc", "--strands", "-5"], ["info", "x", "--no-such-flag"],
     ["new", "--scalp", "x.obj", "--style", "bob", "-o", "x.coif", "--cage", "many"],
     ["bench", "no-such-bench"]])
@@ -139,3 +141,27 @@ def test_bench_json_carries_bars():
     assert bars
     for bar in bars.values():
         assert set(bar) >= {"value", "bar", "holds"}
+
+
+def test_a_turntable_is_as_many_pictures_and_uploads_the_hair_once(scenes, tmp_path):
+    report = tmp_path / "report.json"
+    subprocess.run([COIF, "-q", "render", scenes / "bob.coif", "-o", tmp_path / "turn.png", "--size", "64x64", "--strands",
+                    "300", "--turntable", "3", "--hair", "red", "--report", report], check=True)
+    frames = [tmp_path / f"turn_{k:04d}.png" for k in (1, 2, 3)]
+    assert all(f.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n" for f in frames)
+    assert frames[0].read_bytes() != frames[1].read_bytes()
+    # The second view says of the hair that it was kept.
+    stages = json.loads(report.read_text())["stages"]
+    assert any(s["state"] == "reused" for s in stages), stages
+
+
+def test_path_tracing_states_its_error_and_more_samples_lower_it(scenes, tmp_path):
+    errors = []
+    for samples in (4, 64):
+        done = subprocess.run([COIF, "--json", "render", scenes / "bob.coif", "-o", tmp_path / "truth.exr", "--size", "48x48",
+                               "--strands", "200", "--shading", "path-traced", "--spp", str(samples)],
+                              check=True, capture_output=True, text=True)
+        errors.append(json.loads(done.stdout)["relativeError"])
+    assert (tmp_path / "truth.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
+    # Sixteen times the samples: a quarter of the error, within what few samples tell of it.
+    assert errors[1] < 0.5 * errors[0]

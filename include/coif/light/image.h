@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coif/base/result.h"
+#include "coif/base/vec.h"
 
 namespace coif {
 
@@ -32,6 +33,10 @@ inline constexpr int kLargestPictureSide = 32768;
 /// Refuses an empty picture, one whose values do not match its size, and one beyond kLargestPictureSide.
 Status validate(const Image& image);
 Status validate(const FloatImage& image);
+
+/// The picture over a studio's backdrop, as the preview draws it (shaders/backdrop.frag): a gradient from
+/// `top` to `bottom` with a soft glow behind the model, linear light. Alpha becomes 1.
+FloatImage overBackdrop(const FloatImage& image, const Vec3f& top, const Vec3f& bottom);
 
 /// The eye's picture: exposure 1 (linear 1 is white), clipped, sRGB's transfer curve and no other, rounded;
 /// straight alpha. What is not a number becomes 0. An invalid picture gives an empty one.

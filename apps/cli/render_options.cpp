@@ -1,0 +1,197 @@
+#include "render_options.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <utility>
+
+#include "coif/light/hair_color.h"
+#include "coif/preview/preview.h"
+
+namespace coif::cli {
+namespace {
+
+constexpr HairColor kColors[] = {HairColor::Black, HairColor::Brown, HairColor::Red,
+                                 HairColor::Blond, HairColor::Grey,  HairColor::Dyed};
+
+constexpr std::pair<const char*, VisibilityMethod> kVisibility[] = {
+    {"none", VisibilityMethod::None},
+    {"opacity", VisibilityMethod::Opacity},
+    {"density-clustering", VisibilityMethod::DensityClustering},
+    {"light-map", VisibilityMethod::LightMap},
+    {"deep-opacity", VisibilityMethod::DeepOpacity},
+    {"occupancy", VisibilityMethod::Occupancy},
+    {"exact", VisibilityMethod::Exact}};
+
+bool parseSize(const std::string& text, int& width, int& height) {
+  int used = 0;
+  return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 && used == int(text.size()) &&
+         width >= 1 && height >= 1 && width <= 8192 && height <= 8192;
+}
+
+bool parseAngles(const std::string& text, double& azimuth, double& elevation) {
+  int used = 0;
+  return std::sscanf(text.c_str(), "%lf,%lf%n", &azimuth, &elevation, &used) == 2 &&
+         used == int(text.size()) && std::abs(azimuth) <= 1e6 && std::abs(elevation) <= 90;
+}
+
+bool parseFraction(const std::string& text, double& fraction) {
+  int used = 0;
+  return std::sscanf(text.c_str(), "%lf%n", &fraction, &used) == 1 && used == int(text.size()) &&
+         fraction > 0 && fraction <= 1;
+}
+
+std::string checkSize(const std::string& text) {
+  int width, height;
+  return parseSize(text, width, height)
+             ? ""
+             : "--size wants WIDTHxHEIGHT from 1x1 to 8192x8192, not '" + text + "'";
+}
+std::string checkCamera(const std::string& text) {
+  double azimuth, elevation;
+  return parseAngles(text, azimuth, elevation)
+             ? ""
+             : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
+}
+std::string checkLight(const std::string& text) {
+  double azimuth, elevation;
+  return text == "none" || parseAngles(text, azimuth, elevation)
+             ? ""
+             : "--light wants AZIMUTH,ELEVATION in degrees as seen from the camera, or none, not '" + text +
+                   "'";
+}
+std::string checkLod(const std::string& text) {
+  double fraction;
+  return text == "auto" || text == "off" || parseFraction(text, fraction)
+             ? ""
+             : "--lod wants auto, off or a part of the strands in (0, 1], not '" + text + "'";
+}
+std::string checkOutput(const std::string& text) {
+  const std::string extension = std::filesystem::path(text).extension();
+  return extension == ".png" || extension == ".exr" ? ""
+                                                    : "pictures are .png or .exr files, not '" + text + "'";
+}
+
+}  // namespace
+
+int RenderArguments::width() const {
+  int w = 0, h = 0;
+  parseSize(size, w, h);
+  return w;
+}
+int RenderArguments::height() const {
+  int w = 0, h = 0;
+  parseSize(size, w, h);
+  return h;
+}
+
+double RenderArguments::strandFraction() const {
+  double fraction = 0;
+  return parseFraction(lod, fraction) ? fraction : 0;
+}
+
+VisibilityOptions RenderArguments::visibilityOptions() const {
+  VisibilityOptions options = previewVisibility();
+  for (const auto& [word, method] : kVisibility) {
+    if (visibility == word) options.method = method;
+  }
+  options.layers = layers == "auto" ? 0 : std::stoi(layers);
+  return options;
+}
+
+Lights RenderArguments::lights() const {
+  Lights lights;
+  if (light == "none") {
+    lights.key.color = lights.fill.color = lights.rim.color = Vec3f::Zero();
+  } else if (!light.empty()) {
+    constexpr double kRadians = std::numbers::pi / 180;
+    double azimuth = 0, elevation = 0;
+    parseAngles(light, azimuth, elevation);
+    lights.key.direction =
+        Vec3(std::sin(azimuth * kRadians) * std::cos(elevation * kRadians), std::sin(elevation * kRadians),
+             std::cos(azimuth * kRadians) * std::cos(elevation * kRadians));
+  }
+  return lights;
+}
+
+FibreParameters RenderArguments::fibre(const Scene& document) const {
+  FibreParameters fibre;
+  for (HairColor preset : kColors) {
+    if (hair == nameOf(preset)) {
+      fibre.absorption = absorptionOf(preset);
+      return fibre;
+    }
+  }
+  fibre.absorption = absorptionFromAlbedo(hairColor(document).cast<double>(), fibre.azimuthalRoughness);
+  return fibre;
+}
+
+Vec3f RenderArguments::hairColor(const Scene& document) const {
+  for (HairColor preset : kColors) {
+    if (hair == nameOf(preset)) {
+      return albedoFromAbsorption(absorptionOf(preset), FibreParameters().azimuthalRoughness).cast<float>();
+    }
+  }
+  return color.size() == 3 ? Vec3f(color[0], color[1], color[2]) : document.look.hairColor;
+}
+
+CameraAngles cameraAngles(const RenderArguments& arguments, const Scene& scene) {
+  CameraAngles angles{scene.look.azimuthDeg, scene.look.elevationDeg};
+  if (!arguments.camera.empty()) parseAngles(arguments.camera, angles.azimuthDeg, angles.elevationDeg);
+  return angles;
+}
+
+std::string numberedPath(const std::string& path, int picture, int pictures) {
+  if (pictures <= 1) return path;
+  const std::filesystem::path whole(path);
+  char number[16];
+  std::snprintf(number, sizeof number, "_%04d", picture);
+  return (whole.parent_path() / (whole.stem().string() + number + whole.extension().string())).string();
+}
+
+void RenderArguments::addTo(CLI::App& command) {
+  std::vector<std::string> colors;
+  for (HairColor preset : kColors) colors.push_back(nameOf(preset));
+  command.add_option("scene", scene, "The scene, a .coif file")->required();
+  command.add_option("-o,--output", output, "The picture to write, .png or .exr (linear light)")
+      ->required()
+      ->check(CLI::Validator(checkOutput, "FILE"));
+  command.add_option("--size", size, "Pixels, WIDTHxHEIGHT")->check(CLI::Validator(checkSize, "WxH"));
+  command.add_option("--camera", camera, "Azimuth and elevation in degrees; 0,0 looks along -z")
+      ->check(CLI::Validator(checkCamera, "AZ,EL"));
+  command
+      .add_option("--light", light, "Where the key light stands, as seen from the camera; none: only the sky")
+      ->check(CLI::Validator(checkLight, "AZ,EL|none"));
+  std::vector<std::string> methods;
+  for (const auto& [word, method] : kVisibility) methods.push_back(word);
+  command.add_option("--visibility", visibility, "How hair shadows itself from the key light")
+      ->check(CLI::IsMember(methods));
+  command.add_option("--layers", layers, "Layers of deep opacity maps")
+      ->check(CLI::IsMember({"3", "7", "11", "15", "auto"}));
+  command
+      .add_option("--shading", shading,
+                  "preview: OpenGL, in a moment; path-traced: every bounce, slowly, with a stated error")
+      ->check(CLI::IsMember({"preview", "path-traced"}));
+  command.add_option("--spp", samplesPerPixel, "Samples a pixel of a path-traced picture")
+      ->check(CLI::Range(2, 1 << 20));
+  command.add_option("--target-error", targetError, "Path traced: stop at this relative error of a pixel")
+      ->check(CLI::Range(0.0, 10.0));
+  command.add_option("--turntable", turntable, "So many pictures all around: FILE_0001.png …")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--lod", lod, "auto, off, or the part of the strands to draw")
+      ->check(CLI::Validator(checkLod, "auto|off|F"));
+  auto* hairOption = command.add_option("--hair", hair, "Hair colour by name")->check(CLI::IsMember(colors));
+  command.add_option("--color", color, "Hair colour, linear R G B from 0 to 1")
+      ->expected(3)
+      ->check(CLI::Range(0.0f, 1.0f))
+      ->excludes(hairOption);
+  command.add_flag("--hair-mesh", hairMesh, "Draw the hair mesh over the picture");
+  command.add_flag("--no-strands", noStrands, "Leave the strands out");
+  command.add_flag("--no-shadows", noShadows, "Leave the shadow pass out");
+  command.add_flag_callback(
+      "--no-lod", [this] { lod = "off"; }, "Draw every strand and every point");
+  command.add_flag("--transparent", transparent, "Transparent background");
+}
+
+}  // namespace coif::cli

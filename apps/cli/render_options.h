@@ -1,0 +1,48 @@
+// What `coif render` can be told about a picture, and how its words are read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coif/light/camera.h"
+#include "coif/light/fibre.h"
+#include "coif/light/image.h"
+#include "coif/light/lights.h"
+#include "coif/light/visibility.h"
+#include "coif/scene/scene.h"
+#include "command.h"
+
+namespace coif::cli {
+
+struct RenderArguments {
+  std::string scene, output, size = "1024x1024", camera, light, lod = "auto", shading = "preview", hair,
+                             visibility = "deep-opacity", layers = "7";
+  std::vector<float> color;
+  int samplesPerPixel = 64, turntable = 0;
+  double targetError = 0;
+  bool hairMesh = false, noStrands = false, noShadows = false, transparent = false;
+
+  void addTo(CLI::App& command);
+  int width() const, height() const;
+  /// With lod: the fraction of strands to draw; 0: as many as the picture can tell.
+  double strandFraction() const;
+  bool pathTraced() const { return shading == "path-traced"; }
+  VisibilityOptions visibilityOptions() const;  ///< of the key light in a preview
+  /// Lights with the key turned to --light, or without any light for "none".
+  Lights lights() const;
+  Vec3f hairColor(const Scene& document) const;
+  /// The fibre of that colour: by preset or by albedo.
+  FibreParameters fibre(const Scene& document) const;
+};
+
+/// A camera's direction as --camera has it; the scene's own where it is empty.
+struct CameraAngles {
+  double azimuthDeg = 0, elevationDeg = 0;
+};
+CameraAngles cameraAngles(const RenderArguments& arguments, const Scene& scene);
+
+/// "out.png" → "out_0001.png" for picture 1 of several; the name itself for one alone.
+std::string numberedPath(const std::string& path, int picture, int pictures);
+
+}  // namespace coif::cli
