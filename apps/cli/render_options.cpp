@@ -96,7 +96,7 @@ VisibilityOptions RenderArguments::visibilityOptions() const {
   for (const auto& [word, method] : kVisibility) {
     if (visibility == word) options.method = method;
   }
-  options.layers = layers == "auto" ? 0 : std::stoi(layers);
+  options.layers = std::stoi(layers);
   return options;
 }
 
@@ -168,7 +168,7 @@ void RenderArguments::addTo(CLI::App& command) {
   command.add_option("--visibility", visibility, "How hair shadows itself from the key light")
       ->check(CLI::IsMember(methods));
   command.add_option("--layers", layers, "Layers of deep opacity maps")
-      ->check(CLI::IsMember({"3", "7", "11", "15", "auto"}));
+      ->check(CLI::IsMember({"3", "7", "11", "15"}));
   command
       .add_option("--shading", shading,
                   "preview: OpenGL, in a moment; path-traced: every bounce, slowly, with a stated error")
