@@ -1,5 +1,6 @@
 #include "frame.glsl"
 #include "random.glsl"
+#include "sample_mask.glsl"
 in vec3 shaded;
 flat in uint seed;
 in float coverage;
@@ -14,7 +15,6 @@ void main() {
 #endif
 
 #ifdef EYE_STOCHASTIC
-#include "sample_mask.glsl"
 layout(location = 0) out vec4 color;
 void main() {
   float a = alphaHere();
@@ -25,7 +25,13 @@ void main() {
 
 #ifdef EYE_COVERAGE
 layout(location = 0) out vec4 color;
-void main() { color = vec4(shaded, alphaHere()); }
+// A whole number of samples, rounded at random: a hair of a twentieth of a pixel would otherwise never be seen. A
+// quarter more than the number, so that a driver that rounds and one that cuts off agree.
+void main() {
+  float n = float(gl_NumSamples);
+  float u = float(fragmentBits(seed, uint(viewport.z)) >> 8u) * (1.0 / 16777216.0);
+  color = vec4(shaded, (min(floor(alphaHere() * n + u), n) + 0.25) / n);
+}
 #endif
 
 #ifdef EYE_WEIGHTED

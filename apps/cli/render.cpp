@@ -70,18 +70,6 @@ Status write(const std::string& path, const Image& image, const FloatImage& line
   return file.commit();
 }
 
-PreviewOptions previewOptions(const RenderArguments& arguments, const Scene& scene) {
-  PreviewOptions options;
-  options.width = arguments.width(), options.height = arguments.height();
-  options.hairColor = arguments.hairColor(scene);
-  options.shadows = !arguments.noShadows;
-  options.visibility = arguments.visibilityOptions();
-  options.lod = arguments.lod != "off";
-  options.strandFraction = arguments.strandFraction();
-  options.transparentBackground = arguments.transparent;
-  return options;
-}
-
 using Json = nlohmann::ordered_json;
 
 /// One view after the other, on a session that keeps what did not change.
@@ -101,7 +89,7 @@ class PreviewRenderer {
     if (subject.head) COIF_TRY(made.session_.setHead(*subject.head));
     if (arguments.hairMesh) made.session_.setOverlay(*subject.mesh);
     made.session_.setLights(arguments.lights());
-    made.options_ = previewOptions(arguments, scene);
+    made.options_ = arguments.previewOptions(scene);
     return made;
   }
 
@@ -146,7 +134,7 @@ Result<Json> tracePicture(const Subject& subject, const Scene& scene, const Rend
   options.targetError = arguments.targetError;
   options.seed = scene.strands.seed;
   COIF_ASSIGN(const PathTracePicture picture, pathTrace(traced, options, context));
-  const PreviewOptions look = previewOptions(arguments, scene);
+  const PreviewOptions look = arguments.previewOptions(scene);
   const FloatImage seen = arguments.transparent
                               ? picture.image
                               : overBackdrop(picture.image, look.backgroundTop, look.backgroundBottom);

@@ -24,6 +24,38 @@ constexpr std::pair<const char*, VisibilityMethod> kVisibility[] = {
     {"occupancy", VisibilityMethod::Occupancy},
     {"exact", VisibilityMethod::Exact}};
 
+constexpr std::pair<const char*, PreviewShading> kShadings[] = {
+    {"studio", PreviewShading::Studio},
+    {"kajiya-kay", PreviewShading::KajiyaKay},
+    {"marschner", PreviewShading::Marschner},
+    {"energy-conserving", PreviewShading::Marschner},
+    {"dual-scattering", PreviewShading::DualScattering}};
+
+constexpr std::pair<const char*, PreviewTransparency> kTransparencies[] = {
+    {"opaque", PreviewTransparency::Opaque},
+    {"stochastic", PreviewTransparency::Stochastic},
+    {"alpha-to-coverage", PreviewTransparency::AlphaToCoverage},
+    {"weighted-average", PreviewTransparency::WeightedAverage},
+    {"occupancy-ordered", PreviewTransparency::OccupancyOrdered},
+    {"exact-lists", PreviewTransparency::ExactLists}};
+
+/// What a word of the table means; the first entry's meaning for a word that is not in it.
+template <class Table>
+auto meaning(const Table& table, const std::string& word) {
+  for (const auto& [name, value] : table) {
+    if (word == name) return value;
+  }
+  return table[0].second;
+}
+
+template <class Table>
+CLI::IsMember oneOf(const Table& table, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : table) words.push_back(name);
+  words.insert(words.end(), more.begin(), more.end());
+  return CLI::IsMember(words);
+}
+
 bool parseSize(const std::string& text, int& width, int& height) {
   int used = 0;
   return std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) == 2 && used == int(text.size()) &&
@@ -91,12 +123,21 @@ double RenderArguments::strandFraction() const {
   return parseFraction(lod, fraction) ? fraction : 0;
 }
 
-VisibilityOptions RenderArguments::visibilityOptions() const {
-  VisibilityOptions options = previewVisibility();
-  for (const auto& [word, method] : kVisibility) {
-    if (visibility == word) options.method = method;
-  }
-  options.layers = std::stoi(layers);
+PreviewOptions RenderArguments::previewOptions(const Scene& document) const {
+  PreviewOptions options;
+  options.width = width(), options.height = height();
+  options.hairColor = hairColor(document);
+  options.shading = meaning(kShadings, shading);
+  options.fibre = fibre(document);
+  if (shading == "marschner") options.fibre.model = FibreModel::Marschner;
+  options.useAbsorption = true;
+  options.transparency = meaning(kTransparencies, transparency);
+  options.shadows = !noShadows;
+  options.visibility.method = meaning(kVisibility, visibility);
+  options.visibility.layers = std::stoi(layers);
+  options.lod = lod != "off";
+  options.strandFraction = strandFraction();
+  options.transparentBackground = transparent;
   return options;
 }
 
@@ -163,16 +204,18 @@ void RenderArguments::addTo(CLI::App& command) {
   command
       .add_option("--light", light, "Where the key light stands, as seen from the camera; none: only the sky")
       ->check(CLI::Validator(checkLight, "AZ,EL|none"));
-  std::vector<std::string> methods;
-  for (const auto& [word, method] : kVisibility) methods.push_back(word);
   command.add_option("--visibility", visibility, "How hair shadows itself from the key light")
-      ->check(CLI::IsMember(methods));
+      ->check(oneOf(kVisibility));
+  command.add_option("--transparency", transparency, "How hairs thinner than a pixel cover it")
+      ->check(oneOf(kTransparencies));
   command.add_option("--layers", layers, "Layers of deep opacity maps")
       ->check(CLI::IsMember({"3", "7", "11", "15"}));
   command
-      .add_option("--shading", shading,
-                  "preview: OpenGL, in a moment; path-traced: every bounce, slowly, with a stated error")
-      ->check(CLI::IsMember({"preview", "path-traced"}));
+      .add_option(
+          "--shading", shading,
+          "How hairs scatter light: in a moment by OpenGL, or path-traced: every bounce, slowly, with "
+          "a stated error")
+      ->check(oneOf(kShadings, {"path-traced"}));
   command.add_option("--spp", samplesPerPixel, "Samples a pixel of a path-traced picture")
       ->check(CLI::Range(2, 1 << 20));
   command.add_option("--target-error", targetError, "Path traced: stop at this relative error of a pixel")

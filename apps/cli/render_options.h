@@ -9,15 +9,15 @@
 #include "coif/light/fibre.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
-#include "coif/light/visibility.h"
+#include "coif/preview/preview.h"
 #include "coif/scene/scene.h"
 #include "command.h"
 
 namespace coif::cli {
 
 struct RenderArguments {
-  std::string scene, output, size = "1024x1024", camera, light, lod = "auto", shading = "preview", hair,
-                             visibility = "deep-opacity", layers = "7";
+  std::string scene, output, size = "1024x1024", camera, light, lod = "auto", shading = "studio", hair,
+                             visibility = "deep-opacity", layers = "7", transparency = "stochastic";
   std::vector<float> color;
   int samplesPerPixel = 64, turntable = 0;
   double targetError = 0;
@@ -28,7 +28,8 @@ struct RenderArguments {
   /// With lod: the fraction of strands to draw; 0: as many as the picture can tell.
   double strandFraction() const;
   bool pathTraced() const { return shading == "path-traced"; }
-  VisibilityOptions visibilityOptions() const;  ///< of the key light in a preview
+  /// Of a preview: what the words ask for.
+  PreviewOptions previewOptions(const Scene& document) const;
   /// Lights with the key turned to --light, or without any light for "none".
   Lights lights() const;
   Vec3f hairColor(const Scene& document) const;

@@ -72,10 +72,10 @@ TEST_F(Methods, EveryTransparencyCoversAndColoursAsTheSortedListsDo) {
         PreviewTransparency::WeightedAverage, PreviewTransparency::OccupancyOrdered}) {
     options.transparency = method;
     const Image image = render(sceneOf(strands), options).image;
-    // How alpha to coverage rounds is the driver's: one that rounds down loses half a sample of four a
-    // fragment.
+    // Alpha to coverage takes the same samples first for every hair, so hairs behind each other hide in them:
+    // 0.81 measured with llvmpipe.
     const bool drivers = method == PreviewTransparency::AlphaToCoverage;
-    EXPECT_NEAR(alphaSum(image) / alphaSum(truth), 1, drivers ? 0.5 : 0.02) << int(method);
+    EXPECT_NEAR(alphaSum(image) / alphaSum(truth), 1, drivers ? 0.25 : 0.02) << int(method);
     // The weighted average knows no order; samples are compressed before their mean is taken (resolve.frag).
     EXPECT_NEAR(meanColor(image) / meanColor(truth), 1, 0.15) << int(method);
     EXPECT_EQ(speckles(image), 0) << int(method);

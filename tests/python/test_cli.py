@@ -165,3 +165,17 @@ def test_path_tracing_states_its_error_and_more_samples_lower_it(scenes, tmp_pat
     assert (tmp_path / "truth.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
     # Sixteen times the samples: a quarter of the error, within what few samples tell of it.
     assert errors[1] < 0.5 * errors[0]
+
+
+@pytest.mark.parametrize("option, words", [
+    ("--shading", ["kajiya-kay", "marschner", "energy-conserving", "dual-scattering"]),
+    ("--visibility", ["none", "opacity", "occupancy", "exact"]),
+    ("--transparency", ["weighted-average", "exact-lists"]),
+])
+def test_render_methods_give_pictures_of_their_own(scenes, tmp_path, option, words):
+    pictures = set()
+    for word in words:
+        subprocess.run([COIF, "-q", "render", scenes / "bob.coif", "-o", tmp_path / "p.png", "--size", "64x64", "--strands",
+                        "400", option, word], check=True)
+        pictures.add((tmp_path / "p.png").read_bytes())
+    assert len(pictures) == len(words)
