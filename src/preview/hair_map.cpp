@@ -134,7 +134,8 @@ Result<HairMap> HairMap::make(const Programs& programs, const StrandBuffers* lin
   HairMap map;
   map.view_ = view;
   map.options_ = options;
-  if (lines == nullptr || lines->plan().points == 0) map.options_.method = VisibilityMethod::None;
+  const bool drawn = options.method != VisibilityMethod::LightMap;  // that one looks into the light volume
+  if (drawn && (lines == nullptr || lines->plan().points == 0)) map.options_.method = VisibilityMethod::None;
   map.placeUniforms(opacity);
   if (lines != nullptr) COIF_TRY(map.draw(programs, *lines));
   return map;
