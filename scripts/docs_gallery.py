@@ -43,7 +43,7 @@ def sheet(rows, path):
         for i, (label, picture) in enumerate(row):
             out.paste(picture, (i * (SIZE + 4), j * (SIZE + 20) + 16))
             draw.text((i * (SIZE + 4) + 4, j * (SIZE + 20) + 2), label, fill="black")
-    out.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+    out.save(path, quality=88, optimize=True)  # a palette would grey the colours
 
 
 def difference(a, b, gain=4):
@@ -60,13 +60,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         studio = Studio(arguments.bin.resolve() / "coif", pathlib.Path(folder))
         colors = [(c, studio.picture("--shading", "dual-scattering", "--hair", c)) for c in COLORS]
-        sheet([colors[:3], colors[3:]], arguments.output / "gallery-colors.png")
+        sheet([colors[:3], colors[3:]], arguments.output / "gallery-colors.jpg")
         shadows = {s: studio.picture("--visibility", s, "--hair", "blond") for s in SHADOWS}
         apart = {s: difference(shadows[s], shadows["exact"]) for s in SHADOWS}
         sheet([list(shadows.items()), [(f"difference x 4, mean {apart[s][1]:.2f}", apart[s][0]) for s in SHADOWS]],
-              arguments.output / "gallery-shadows.png")
+              arguments.output / "gallery-shadows.jpg")
         sheet([[(s, studio.picture("--shading", s, "--hair", "red")) for s in SHADINGS]],
-              arguments.output / "gallery-shadings.png")
+              arguments.output / "gallery-shadings.jpg")
 
 
 if __name__ == "__main__":
