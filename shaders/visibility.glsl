@@ -34,7 +34,8 @@ float keyPastHead(vec3 p, vec2 offsetTexels) {
   for (int k = 0; k < 4; ++k) {
     ivec2 o = ivec2(k & 1, k >> 1);
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
-    sum += w * (texelFetch(headDepthMap, base + o, 0).r * shadowInfo.y + shadowInfo.w >= s.z ? 1.0 : 0.0);
+    float first = texelFetch(headDepthMap, base + o, 0).r;   // 1: no head, however far p lies behind the scene
+    sum += w * (first == 1.0 || first * shadowInfo.y + shadowInfo.w >= s.z ? 1.0 : 0.0);
   }
   return sum;
 }

@@ -8,6 +8,7 @@
 #include "coif/light/path_tracer.h"
 #include "coif/preview/session.h"
 #include "coif/scene/evaluate.h"
+#include "render_frames.h"
 #include "render_options.h"
 #include "scene_options.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct Arguments {
   RenderArguments render;
+  FrameArguments frames;
   StrandArguments strands;
   EvaluateArguments evaluate;
 };
@@ -48,6 +50,7 @@ struct Subject {
   const StrandSet* strands = nullptr;
   const HairMesh* mesh = nullptr;
   const PolygonMesh* head = nullptr;
+  std::optional<Ground> ground;
 };
 
 Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, Evaluation& evaluation,
@@ -59,6 +62,8 @@ Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, 
   COIF_ASSIGN(subject.mesh, evaluation.placedMesh(scene, context));
   COIF_ASSIGN(const Surface* head, evaluation.head(scene, context));
   if (head) subject.head = &head->mesh();
+  if (head && !arguments.noGround && !arguments.transparent)
+    subject.ground = groundUnder(*subject.head, scene.upAxis);
   return subject;
 }
 
@@ -87,10 +92,23 @@ class PreviewRenderer {
       COIF_TRY(made.session_.setStrands(*subject.strands, context));
     }
     if (subject.head) COIF_TRY(made.session_.setHead(*subject.head));
+    COIF_TRY(made.session_.setGround(subject.ground));
+    made.grown_ = subject.strands && scene.strands.tolerance <= 0;
+    made.hairMesh_ = arguments.hairMesh;
     if (arguments.hairMesh) made.session_.setOverlay(*subject.mesh);
     made.session_.setLights(arguments.lights());
     made.options_ = arguments.previewOptions(scene);
     return made;
+  }
+
+  /// The hair mesh on a frame, in the head's frame, and the ground as it lies there; strands follow on the
+  /// GPU.
+  Status move(const HairMesh& mesh, const std::optional<Ground>& ground, const Context& context) {
+    COIF_TRY(session_.setGround(ground));
+    std::vector<Vec3> positions;
+    for (const HairVertex& vertex : mesh.vertices()) positions.push_back(vertex.position);
+    if (hairMesh_) session_.setOverlay(mesh);
+    return grown_ ? session_.moveHair(positions, context) : Status();
   }
 
   Result<Json> render(const Camera& camera, const std::string& path, const Context& context,
@@ -117,6 +135,7 @@ class PreviewRenderer {
   Preview preview_;
   PreviewSession session_;
   PreviewOptions options_;
+  bool grown_ = false, hairMesh_ = false;
 };
 
 Result<Json> tracePicture(const Subject& subject, const Scene& scene, const RenderArguments& arguments,
@@ -125,6 +144,7 @@ Result<Json> tracePicture(const Subject& subject, const Scene& scene, const Rend
   PathTraceScene traced;
   traced.strands = subject.strands;
   traced.head = subject.head;
+  traced.ground = subject.ground;
   traced.camera = camera;
   traced.lights = arguments.lights();
   traced.fibre = arguments.fibre(scene);
@@ -160,6 +180,8 @@ Status render(const Arguments& all, Session& session) {
   const RenderArguments& arguments = all.render;
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
   all.strands.apply(scene);
+  if (all.frames.asked())
+    scene.strands.tolerance = 0;  // strands that move have the same points on every frame
   Evaluation evaluation(all.evaluate.options());
   const Context context = session.context();
   COIF_ASSIGN(const Subject subject, subjectOf(scene, arguments, evaluation, context));
@@ -170,21 +192,59 @@ Status render(const Arguments& all, Session& session) {
   }
   const Box box = framed(subject.strands, *subject.mesh, scene.upAxis);
   const CameraAngles from = cameraAngles(arguments, scene);
-  const int pictures = std::max(arguments.turntable, 1);
+  const auto cameraAt = [&](double turnDeg) {
+    return frameBox(box, scene.upAxis, from.azimuthDeg + turnDeg, from.elevationDeg,
+                    double(arguments.width()) / arguments.height());
+  };
+  const auto picture = [&](const Subject& seen, const Camera& camera, const std::string& path) {
+    return preview ? preview->render(camera, path, context, session)
+                   : tracePicture(seen, scene, arguments, camera, path, context, session);
+  };
+  // The GPU's hair moves in the head's frame, where its roots stand still; the path tracer's in the scene's.
+  const auto frame = [&](const DynamicsCache& motion, std::size_t f,
+                         const std::string& path) -> Result<Json> {
+    const RigidPose& pose = motion.poses[f];
+    if (preview) {
+      COIF_ASSIGN(const HairMesh moved, evaluation.meshAt(scene, motion, f, context));
+      std::optional<Ground> ground;
+      if (subject.ground) ground = groundFromHead(*subject.ground, pose);
+      COIF_TRY(preview->move(moved, ground, context));
+      return picture(subject, cameraFromHead(cameraAt(0), pose), path);
+    }
+    Subject seen = subject;
+    StrandSet strands;
+    std::optional<PolygonMesh> head;
+    if (subject.strands) {
+      COIF_ASSIGN(strands, evaluation.strandsAt(scene, motion, f, context));
+      seen.strands = &strands;
+    }
+    if (subject.head) seen.head = &head.emplace(headInWorld(*subject.head, pose));
+    return picture(seen, cameraAt(0), path);
+  };
   Json results = Json::array();
-  for (int k = 0; k < pictures; ++k) {
-    const Camera camera = frameBox(box, scene.upAxis, from.azimuthDeg + 360.0 * k / pictures,
-                                   from.elevationDeg, double(arguments.width()) / arguments.height());
-    const std::string path = numberedPath(arguments.output, k + 1, arguments.turntable);
-    COIF_ASSIGN(Json result, preview
-                                 ? preview->render(camera, path, context, session)
-                                 : tracePicture(subject, scene, arguments, camera, path, context, session));
-    results.push_back(std::move(result));
+  std::vector<StageReport> stages;
+  if (all.frames.asked()) {
+    COIF_ASSIGN(const DynamicsCache motion, all.frames.load(scene, evaluation, context));
+    stages = evaluation.reports();
+    for (std::size_t f = all.frames.first(); f < all.frames.end(motion); ++f) {
+      const std::string path = numberedPath(arguments.output, int(f + 1));
+      COIF_ASSIGN(Json result, frame(motion, f, path));
+      results.push_back(std::move(result));
+    }
+  } else {
+    const int pictures = std::max(arguments.turntable, 1);
+    for (int k = 0; k < pictures; ++k) {
+      const std::string path =
+          arguments.turntable > 1 ? numberedPath(arguments.output, k + 1) : arguments.output;
+      COIF_ASSIGN(Json result, picture(subject, cameraAt(360.0 * k / pictures), path));
+      results.push_back(std::move(result));
+    }
+    stages = evaluation.reports();
   }
-  std::vector<StageReport> stages = evaluation.reports();
   if (preview) stages.insert(stages.end(), preview->stages.begin(), preview->stages.end());
   COIF_TRY(all.evaluate.tell(stages, session));
-  session.finish(arguments.turntable > 0 ? Json{{"pictures", results}} : results.front());
+  const bool several = arguments.turntable > 0 || all.frames.asked();
+  session.finish(several ? Json{{"pictures", results}} : results.front());
   return {};
 }
 
@@ -196,8 +256,9 @@ void addRender(CLI::App& app, Session& session) {
   command->footer(
       "Example:\n  coif render bob.coif -o bob.png --size 1024x1024 --camera 30,8 --hair brown\n"
       "  coif render bob.coif -o truth.exr --shading path-traced --spp 256\n"
-      "  coif render bob.coif -o turn.png --turntable 36\n");
-  arguments->render.addTo(*command);
+      "  coif render bob.coif -o turn.png --turntable 36\n"
+      "  coif render long.coif -o sway.png --motion long.coifcache --frames 1-48\n");
+  arguments->frames.addTo(*command, arguments->render.addTo(*command));
   arguments->strands.addTo(*command);
   arguments->evaluate.addTo(*command);
   command->callback([arguments, &session] {

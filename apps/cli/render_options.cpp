@@ -134,7 +134,7 @@ PreviewOptions RenderArguments::previewOptions(const Scene& document) const {
   options.transparency = meaning(kTransparencies, transparency);
   options.shadows = !noShadows;
   options.visibility.method = meaning(kVisibility, visibility);
-  options.visibility.layers = std::stoi(layers);
+  options.visibility.layers = layers == "auto" ? 0 : std::stoi(layers);
   options.lod = lod != "off";
   options.strandFraction = strandFraction();
   options.transparentBackground = transparent;
@@ -183,15 +183,14 @@ CameraAngles cameraAngles(const RenderArguments& arguments, const Scene& scene) 
   return angles;
 }
 
-std::string numberedPath(const std::string& path, int picture, int pictures) {
-  if (pictures <= 1) return path;
+std::string numberedPath(const std::string& path, int picture) {
   const std::filesystem::path whole(path);
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", picture);
   return (whole.parent_path() / (whole.stem().string() + number + whole.extension().string())).string();
 }
 
-void RenderArguments::addTo(CLI::App& command) {
+CLI::Option* RenderArguments::addTo(CLI::App& command) {
   std::vector<std::string> colors;
   for (HairColor preset : kColors) colors.push_back(nameOf(preset));
   command.add_option("scene", scene, "The scene, a .coif file")->required();
@@ -208,8 +207,9 @@ void RenderArguments::addTo(CLI::App& command) {
       ->check(oneOf(kVisibility));
   command.add_option("--transparency", transparency, "How hairs thinner than a pixel cover it")
       ->check(oneOf(kTransparencies));
-  command.add_option("--layers", layers, "Layers of deep opacity maps")
-      ->check(CLI::IsMember({"3", "7", "11", "15"}));
+  command
+      .add_option("--layers", layers, "Layers of deep opacity maps; auto: the fewest whose error is bounded")
+      ->check(CLI::IsMember({"auto", "3", "7", "11", "15"}));
   command
       .add_option(
           "--shading", shading,
@@ -220,8 +220,9 @@ void RenderArguments::addTo(CLI::App& command) {
       ->check(CLI::Range(2, 1 << 20));
   command.add_option("--target-error", targetError, "Path traced: stop at this relative error of a pixel")
       ->check(CLI::Range(0.0, 10.0));
-  command.add_option("--turntable", turntable, "So many pictures all around: FILE_0001.png …")
-      ->check(CLI::Range(1, 10000));
+  CLI::Option* turn =
+      command.add_option("--turntable", turntable, "So many pictures all around: FILE_0001.png …")
+          ->check(CLI::Range(1, 10000));
   command.add_option("--lod", lod, "auto, off, or the part of the strands to draw")
       ->check(CLI::Validator(checkLod, "auto|off|F"));
   auto* hairOption = command.add_option("--hair", hair, "Hair colour by name")->check(CLI::IsMember(colors));
@@ -232,9 +233,11 @@ void RenderArguments::addTo(CLI::App& command) {
   command.add_flag("--hair-mesh", hairMesh, "Draw the hair mesh over the picture");
   command.add_flag("--no-strands", noStrands, "Leave the strands out");
   command.add_flag("--no-shadows", noShadows, "Leave the shadow pass out");
+  command.add_flag("--no-ground", noGround, "Nothing under the head");
   command.add_flag_callback(
       "--no-lod", [this] { lod = "off"; }, "Draw every strand and every point");
   command.add_flag("--transparent", transparent, "Transparent background");
+  return turn;
 }
 
 }  // namespace coif::cli

@@ -21,9 +21,10 @@ struct RenderArguments {
   std::vector<float> color;
   int samplesPerPixel = 64, turntable = 0;
   double targetError = 0;
-  bool hairMesh = false, noStrands = false, noShadows = false, transparent = false;
+  bool hairMesh = false, noStrands = false, noShadows = false, noGround = false, transparent = false;
 
-  void addTo(CLI::App& command);
+  /// Gives back --turntable.
+  CLI::Option* addTo(CLI::App& command);
   int width() const, height() const;
   /// With lod: the fraction of strands to draw; 0: as many as the picture can tell.
   double strandFraction() const;
@@ -43,7 +44,7 @@ struct CameraAngles {
 };
 CameraAngles cameraAngles(const RenderArguments& arguments, const Scene& scene);
 
-/// "out.png" → "out_0001.png" for picture 1 of several; the name itself for one alone.
-std::string numberedPath(const std::string& path, int picture, int pictures);
+/// "out.png" → "out_0001.png" for picture 1.
+std::string numberedPath(const std::string& path, int picture);
 
 }  // namespace coif::cli

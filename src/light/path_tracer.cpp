@@ -69,21 +69,14 @@ double largestCoordinate(const PathTraceScene& scene) {
 
 Result<PathWorld> makeWorld(const PathTraceScene& scene, const PathTraceOptions& options,
                             const CameraFrame& camera) {
-  if (!isAlbedo(scene.headColor) || (scene.ground && !isAlbedo(scene.ground->color))) {
-    return makeError(ErrorCode::InvalidArgument, "the colours of head and ground must lie between 0 and 1");
-  }
+  if (!isAlbedo(scene.headColor))
+    return makeError(ErrorCode::InvalidArgument, "the head's colour must lie between 0 and 1");
+  if (scene.ground) COIF_TRY(validate(*scene.ground));
   const UpAxis up = scene.strands ? scene.strands->upAxis : scene.head ? scene.head->upAxis : UpAxis::Y;
   COIF_ASSIGN(LightSampler lights, LightSampler::create(scene.lights, camera, up));
   COIF_ASSIGN(RayScene rays, RayScene::build(scene.strands, scene.head));
   PathWorld world{std::move(rays), std::move(lights), {}, {}, scene.ground};
-  if (world.ground) {
-    world.ground->normal = world.ground->normal.stableNormalized();
-    if (!world.ground->point.allFinite() || !(world.ground->normal.norm() > 0.5) ||
-        !(world.ground->radius >= 0)) {
-      return makeError(ErrorCode::InvalidArgument,
-                       "the ground needs a point, a normal with length and a radius");
-    }
-  }
+  if (world.ground) world.ground->normal = world.ground->normal.stableNormalized();
   if (scene.useStrandColors && scene.strands && !scene.strands->colors.empty()) {
     colorFibres(scene, world);
   }

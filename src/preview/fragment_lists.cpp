@@ -13,7 +13,7 @@ void FragmentLists::bindCounts() const {
   glBindImageTexture(1, counts_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
 }
 
-Status FragmentLists::makeRoom(std::size_t entryBytes) {
+Status FragmentLists::makeRoom(std::size_t entryBytes, std::size_t mostBytes) {
   const std::size_t texels = std::size_t(width_) * std::size_t(height_);
   std::vector<std::uint32_t> starts(texels + 1, 0);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
@@ -26,7 +26,8 @@ Status FragmentLists::makeRoom(std::size_t entryBytes) {
   }
   GLint64 most = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-  if (sum * entryBytes > std::size_t(std::max<GLint64>(most, 1 << 24)) || sum > 0xffffffffu) {
+  if (sum * entryBytes > std::min(mostBytes, std::size_t(std::max<GLint64>(most, 1 << 24))) ||
+      sum > 0xffffffffu) {
     return makeError(ErrorCode::TooLarge, "a list of " + std::to_string(sum) +
                                               " fragments exceeds what the driver can hold; use fewer "
                                               "strands or a smaller picture");

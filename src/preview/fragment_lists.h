@@ -2,6 +2,7 @@
 // sorted. The result does not depend on the order in which they come.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "preview/gl_objects.h"
@@ -14,8 +15,8 @@ class FragmentLists {
   FragmentLists(int width, int height);
   /// Image unit 1: counts, zero at first. Draw with a program that counts, then call.
   void bindCounts() const;
-  /// Makes room for what was counted, `entryBytes` each. Errors: TooLarge.
-  Status makeRoom(std::size_t entryBytes);
+  /// Makes room for what was counted, `entryBytes` each. Errors: TooLarge, also above `mostBytes`.
+  Status makeRoom(std::size_t entryBytes, std::size_t mostBytes = SIZE_MAX);
   /// Image unit 1 and storage blocks 1 and 2, for writing and for look-ups.
   void bind() const;
   /// With lists_sort.comp's permutation.

@@ -58,7 +58,9 @@ void drawAdding(const StrandBuffers& lines, GLuint program, const Texture& targe
 Status checkMapOptions(const VisibilityOptions& options) {
   const char* wrong = nullptr;
   if (options.slices < 1 || options.slices > kMostSlices) wrong = "an opacity map has 1 … 256 slices here";
-  if (options.layers < 1 || options.layers > kMostLayers) wrong = "a deep opacity map has 1 … 16 layers here";
+  if (options.layers < 0 || options.layers > kMostLayers)
+    wrong = "a deep opacity map has 1 … 16 layers here, or 0 to choose them";
+  if (!(options.bound > 0)) wrong = "the bound for choosing layers has to be positive";
   if (options.clusters != 4) wrong = "density clustering has 4 clusters here";
   if (options.occupancySlices != 128 || options.slabs != 4)
     wrong = "occupancy maps have 128 slices in 4 slabs here";
@@ -305,7 +307,7 @@ Status HairMap::drawLists(const Programs& programs, const StrandBuffers& lines) 
   lists_->bindCounts();
   glUseProgram(programs(linePass("PASS_COUNT", options_)));
   lines.draw();
-  COIF_TRY(lists_->makeRoom(8));
+  COIF_TRY(lists_->makeRoom(8, listLimit_));
   lists_->bind();
   glUseProgram(programs(linePass("PASS_LIST", options_)));
   lines.draw();

@@ -7,8 +7,11 @@
 // fragment.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "coif/light/light_view.h"
@@ -20,7 +23,7 @@
 namespace coif::preview {
 
 /// Errors: InvalidArgument for what the GPU's versions do not have: more than 256 slices or 16 layers,
-/// clusters other than 4, occupancy other than 128 slices in 4 slabs, a number of layers to be chosen.
+/// clusters other than 4, occupancy other than 128 slices in 4 slabs.
 Status checkMapOptions(const VisibilityOptions& options);
 
 /// The permutation of hair_map_query.glsl for these options, for any shader that looks the map up.
@@ -33,6 +36,16 @@ class HairMap {
   /// DeepOpacity. Errors: TooLarge where the driver cannot hold it.
   static Result<HairMap> make(const Programs& programs, const StrandBuffers* lines, const LightView& view,
                               double opacity, const VisibilityOptions& options);
+  /// Deep opacity of the fewest of 3, 7, 11 and 15 layers whose bound is at most `options.bound`; where none
+  /// is, the fewest within 3 % of the least. With `lists`, sorted lists instead where those take no more
+  /// memory than three layers. `layerSize` says s for a number of layers where `options` does not.
+  static Result<HairMap> makeFewest(const Programs& programs, const StrandBuffers& lines,
+                                    const LightView& view, double opacity, const VisibilityOptions& options,
+                                    bool lists, const std::function<double(int)>& layerSize);
+
+  /// As VisibilityMap::aPosterioriBound: of deep opacity and of lists; one where nothing is known.
+  TransmittanceBound bound(const Programs& programs) const;
+  const std::string& choice() const { return choice_; }  ///< why makeFewest chose what it did
 
   /// Uniform block 1, texture units 2 … 4, storage blocks 1 … 3, as hair_map_query.glsl names them.
   void bind() const;
@@ -55,13 +68,15 @@ class HairMap {
   void drawClusters(const Programs& programs, const StrandBuffers& lines);
   void drawOccupancy(const Programs& programs, const StrandBuffers& lines);
   Status drawLists(const Programs& programs, const StrandBuffers& lines);
+  Result<bool> drawShortLists(const Programs& programs, const StrandBuffers& lines);
   Status draw(const Programs& programs, const StrandBuffers& lines);
   Texture makeLayers(int count, GLenum format = GL_RGBA32F);
   Texture makeFlat(GLenum format);
 
   LightView view_;
   VisibilityOptions options_;
-  std::size_t bytes_ = 0;
+  std::string choice_;
+  std::size_t bytes_ = 0, listLimit_ = SIZE_MAX;
   Buffer uniforms_, wholeRange_;
   Texture range_, layers_, bits_;
   std::optional<FragmentLists> lists_;

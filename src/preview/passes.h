@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "coif/light/ground.h"
 #include "preview/fibre_tables.h"
 #include "preview/frame_data.h"
 #include "preview/gl_objects.h"
@@ -30,6 +31,12 @@ class HeadBuffers {
   GLsizei count_ = 0;
 };
 
+/// A disc lit like the head, with the shadow of head and hair; what shadows it must be bound.
+void drawGround(const Programs& programs, const VertexArray& empty, const Ground& ground, double radius,
+                const VisibilityOptions& visibility);
+/// Its own, or as far as one looks in a scene of that diagonal.
+double groundRadius(const Ground& ground, double sceneDiagonal);
+
 /// Places the key light's map over the scene and fills the fields of `frame` that say how it lies.
 LightView placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame);
 
@@ -42,8 +49,9 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 class ShadowPass {
  public:
   /// Fills the volume fields of `frame`, which must be on the GPU already; null strands or head are left out.
+  /// `lists`: sorted lists may take the place of a number of layers that is to be chosen.
   static Result<ShadowPass> make(const Programs& programs, const LightView& view,
-                                 const VisibilityOptions& options, const CoarseStrands* strands,
+                                 const VisibilityOptions& options, bool lists, const CoarseStrands* strands,
                                  const StrandBuffers* lines, const PolygonMesh* head,
                                  const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
   void bindForHair() const;
@@ -59,6 +67,7 @@ class ShadowPass {
 /// Every program and permutation that the room can ask for; a test compiles them all.
 std::vector<ProgramSource> allPermutations();
 ProgramSource headProgram(const VisibilityOptions& visibility);
+ProgramSource groundProgram(const VisibilityOptions& visibility);
 /// `fibre` null: the shading without tables.
 ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
                            bool multiple);

@@ -6,6 +6,10 @@ ProgramSource headProgram(const VisibilityOptions& visibility) {
   return {"head.vert", "head.frag", mapDefines(visibility)};
 }
 
+ProgramSource groundProgram(const VisibilityOptions& visibility) {
+  return {"ground.vert", "ground.frag", mapDefines(visibility)};
+}
+
 ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
                            bool multiple) {
   ProgramSource source{"strand_shade.comp", "", {}};
@@ -30,6 +34,7 @@ std::vector<ProgramSource> allPermutations() {
   std::vector<std::vector<std::string>> lights = mapQueryPermutations();
   for (std::vector<std::string>& defines : lights) {
     all.push_back({"head.vert", "head.frag", defines});
+    all.push_back({"ground.vert", "ground.frag", defines});
     defines.push_back("SHADOWS");
   }
   lights.push_back({});

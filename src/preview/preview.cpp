@@ -47,6 +47,7 @@ Result<Picture> Preview::render(const PreviewScene& scene, const PreviewOptions&
     session.impl_->head =
         std::shared_ptr<const PolygonMesh>(std::shared_ptr<void>(), scene.head);  // not copied
   }
+  COIF_TRY(session.setGround(scene.ground));
   if (scene.strands != nullptr) {
     COIF_TRY(scene.grownOn != nullptr
                  ? session.setHair(*scene.grownOn, *scene.strands, scene.knots, 0, context)

@@ -62,6 +62,7 @@ std::span<const ProgramSource> allPrograms() {
       {"fullscreen.vert", "backdrop.frag", {}},
       {"shadow_head.vert", "shadow_depth.frag", {}},
       {"map_range.comp", "", {}},
+      {"map_bound.comp", "", {}},
       {"map_clusters.comp", "", {}},
       {"lists_sort.comp", "", {}},
       {"overlay.vert", "overlay.frag", {}},

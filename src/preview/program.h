@@ -22,6 +22,7 @@ enum class ProgramId {
   Backdrop,
   ShadowHead,
   MapRange,
+  MapBound,
   MapClusters,
   SortMapLists,
   Overlay,

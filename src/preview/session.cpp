@@ -73,6 +73,15 @@ void PreviewSession::clearHead() {
   impl_->head.reset();
 }
 
+Status PreviewSession::setGround(std::optional<Ground> ground) {
+  if (ground) {
+    COIF_TRY(validate(*ground));
+    ground->normal = ground->normal.stableNormalized();
+  }
+  impl_->ground = std::move(ground);
+  return {};
+}
+
 void PreviewSession::setOverlay(const HairMesh& mesh) {
   clearOverlay();
   impl_->overlay = mesh;

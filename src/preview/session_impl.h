@@ -18,6 +18,7 @@ struct PreviewSession::Impl {
   Camera camera;
   Lights lights;
   std::shared_ptr<const PolygonMesh> head;
+  std::optional<Ground> ground;
   std::optional<HairMesh> overlay;
   std::optional<PreparedHair> hair;
   bool hairMoved = false;  ///< the mesh on the GPU is older than the model's
@@ -45,7 +46,8 @@ struct PreviewSession::Impl {
 
  private:
   friend class PreviewSession;
-  Box box() const;
+  Box box() const;      ///< of head, hair and overlay
+  Box seenBox() const;  ///< with the ground
   void upload(Picture& picture);
   void makeEyeStrands(const PreviewOptions& options, const View& view, Picture& picture,
                       const Context& context);

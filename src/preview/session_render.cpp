@@ -100,7 +100,7 @@ bool sameLight(const FrameData& a, const FrameData& b) {
 
 bool sameMap(const VisibilityOptions& a, const VisibilityOptions& b) {
   const auto key = [](const VisibilityOptions& o) {
-    return std::tuple(o.method, o.slices, o.layers, o.sizes, o.past, o.layerSize, o.filter);
+    return std::tuple(o.method, o.slices, o.layers, o.bound, o.sizes, o.past, o.layerSize, o.filter);
   };
   return key(a) == key(b);
 }
@@ -121,6 +121,19 @@ Box PreviewSession::Impl::box() const {
   }
   if (overlay && !overlay->vertices().empty()) include(box, any, finiteBox(*overlay));
   return box;
+}
+
+// No map is made of the ground, so it is in the camera's range alone, and no farther than one can see.
+Box PreviewSession::Impl::seenBox() const {
+  Box seen = box();
+  bool any = seen.diagonal() > 0;
+  if (ground) {
+    const double radius = groundRadius(*ground, seen.diagonal());
+    const Vec3 reach =
+        radius * (Vec3::Ones() - ground->normal.cwiseAbs2()).cwiseMax(0).cwiseSqrt();  // of a disc, by axis
+    include(seen, any, {ground->point - reach, ground->point + reach});
+  }
+  return seen;
 }
 
 void PreviewSession::Impl::upload(Picture& picture) {
@@ -235,12 +248,13 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   shadows.reset();
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
   COIF_ASSIGN(ShadowPass made,
-              ShadowPass::make(*device->programs, lightView, options.visibility,
+              ShadowPass::make(*device->programs, lightView, options.visibility, options.leaveOut,
                                withHair ? &hair->model.coarse : nullptr,
                                withHair && needsLines ? shadowStrands.get() : nullptr, head.get(),
                                options.shadows ? headBuffers.get() : nullptr, frame, context));
   shadows = std::make_unique<ShadowPass>(std::move(made));
   stage.bytes = shadows->map().bytes();
+  if (!shadows->map().choice().empty()) stage.notes.push_back(shadows->map().choice());
   shadowFrame = frame;
   shadowsHaveHair = withHair;
   shadowOptions = options.visibility;
@@ -250,7 +264,7 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
 Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, const Context& context) {
   const Stopwatch watch;
   COIF_TRY(checkOptions(options));
-  COIF_ASSIGN(const View view, makeView(camera, box(), options.width, options.height));
+  COIF_ASSIGN(const View view, makeView(camera, seenBox(), options.width, options.height));
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
   COIF_TRY(device->gl->makeCurrent());
   const CurrentContext current(*device->gl);
@@ -354,6 +368,11 @@ Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
     shadows->bindForHead();
     glUseProgram(programs(headProgram(shadows->map().options())));
     headBuffers->draw();
+  }
+  if (ground) {
+    shadows->bindForHead();
+    drawGround(programs, device->empty, *ground, groundRadius(*ground, box().diagonal()),
+               shadows->map().options());
   }
   if (hair) {
     COIF_TRY(eye->draw({programs, *eyeStrands, headBuffers.get(), cameraMap.get(), *targets, device->empty}));

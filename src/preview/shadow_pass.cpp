@@ -72,9 +72,9 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 }
 
 Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& view,
-                                    const VisibilityOptions& options, const CoarseStrands* strands,
-                                    const StrandBuffers* lines, const PolygonMesh* head,
-                                    const HeadBuffers* headBuffers, FrameData& frame,
+                                    const VisibilityOptions& options, bool lists,
+                                    const CoarseStrands* strands, const StrandBuffers* lines,
+                                    const PolygonMesh* head, const HeadBuffers* headBuffers, FrameData& frame,
                                     const Context& context) {
   ShadowPass pass;
   LightVolumes volumes;
@@ -92,10 +92,19 @@ Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& v
   pass.withHead_ = uploadVolume(volumes.withHead);
   VisibilityOptions chosen = options;
   if (strands == nullptr) chosen.method = VisibilityMethod::None;
-  if (chosen.method == VisibilityMethod::DeepOpacity && !(chosen.layerSize > 0)) {
-    chosen.layerSize = chooseLayerSize(*strands, view, chosen, context);
+  const auto sizeOf = [&](int layers) {
+    VisibilityOptions of = chosen;
+    of.layers = layers;
+    return chooseLayerSize(*strands, view, of, context);
+  };
+  const bool deep =
+      chosen.method == VisibilityMethod::DeepOpacity && lines != nullptr && lines->plan().points > 0;
+  if (deep && chosen.layers == 0) {
+    COIF_ASSIGN(pass.map_, HairMap::makeFewest(programs, *lines, view, 1, chosen, lists, sizeOf));
+  } else {
+    if (deep && !(chosen.layerSize > 0)) chosen.layerSize = sizeOf(chosen.layers);
+    COIF_ASSIGN(pass.map_, HairMap::make(programs, lines, view, 1, chosen));
   }
-  COIF_ASSIGN(pass.map_, HairMap::make(programs, lines, view, 1, chosen));
   pass.map_.bind();
   pass.headDepth_ = drawHead(programs, headBuffers, view.size);
   return pass;

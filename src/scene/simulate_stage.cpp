@@ -141,8 +141,8 @@ Result<const DynamicsCache*> Evaluation::simulate(const Scene& scene, const Simu
   return static_cast<const DynamicsCache*>(&*impl_->motion);
 }
 
-Result<StrandSet> Evaluation::strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
-                                        const Context& context) {
+Result<HairMesh> Evaluation::meshAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
+                                    const Context& context) {
   COIF_ASSIGN(const HairMesh* placed, placedMesh(scene, context));
   if (frame >= motion.frameCount() || motion.vertexCount != placed->vertices().size())
     return makeError(ErrorCode::InvalidArgument, "the cache has no such frame of this hair mesh",
@@ -156,6 +156,13 @@ Result<StrandSet> Evaluation::strandsAt(const Scene& scene, const DynamicsCache&
                        (local - mesh.position(v)).norm() < 1e-5 * (1 + local.norm() + pose.position.norm());
     if (!rests) mesh.setPosition(v, local);
   }
+  return mesh;
+}
+
+Result<StrandSet> Evaluation::strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
+                                        const Context& context) {
+  COIF_ASSIGN(const HairMesh mesh, meshAt(scene, motion, frame, context));
+  const RigidPose pose = motion.poses[frame];
   Scene asked = scene;
   asked.strands.tolerance = 0;
   COIF_ASSIGN(GrowResult grown, grow(mesh, growOptions(asked, impl_->head.get()), context));

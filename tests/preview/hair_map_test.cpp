@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "coif/base/random.h"
@@ -67,8 +68,8 @@ class HairMaps : public ::testing::Test {
     DetailOptions everything;
     everything.lod = false;
     DetailPlan plan = makePlan(*gpu.model, everything, [](const Vec3&) { return 1.0; }, {});
-    gpu.lines =
-        std::make_unique<StrandBuffers>(*gpu.model, *gpu.hair, *programs, std::move(plan), Topology::Segments);
+    gpu.lines = std::make_unique<StrandBuffers>(*gpu.model, *gpu.hair, *programs, std::move(plan),
+                                                Topology::Segments);
     return gpu;
   }
   struct Difference {
@@ -159,6 +160,70 @@ TEST_F(HairMaps, AgreeWithTheCpuForEveryMethod) {
       EXPECT_LT(d.meanAbsolute, 2e-3) << test.name;
       EXPECT_TRUE(test.options.method == VisibilityMethod::None || d.cpuMean < 0.9) << test.name;
     }
+  }
+}
+
+TEST_F(HairMaps, KnowTheirBoundAsTheCpuDoes) {
+  const StrandSet strands = clumps(800);
+  const LightView view = distantLightView(Vec3(0.3, 0.8, 0.45), boxOf(strands), 100);
+  const OnGpu gpu = upload(strands);
+  const FragmentStream stream = FragmentStream::make(strands, view, {}).value();
+  for (const int layers : {3, 7, 15}) {
+    VisibilityOptions options;
+    options.layers = layers, options.layerSize = 0.02;
+    const TransmittanceBound cpu = buildVisibility(stream, options).value()->aPosterioriBound();
+    const auto map = HairMap::make(*programs, gpu.lines.get(), view, 1, options);
+    ASSERT_TRUE(map.ok()) << map.error().text();
+    const TransmittanceBound bound = map->bound(*programs);
+    EXPECT_GT(cpu.mean, 0.01) << layers;
+    // Floats against doubles, and a fragment at a texel's border may fall to either side.
+    EXPECT_NEAR(bound.mean, cpu.mean, 1e-3) << layers;
+    EXPECT_NEAR(bound.worst, cpu.worst, 1e-2) << layers;
+  }
+}
+
+TEST_F(HairMaps, TakeTheFewestLayersThatMeetTheBound) {
+  const StrandSet strands = clumps(1200);
+  const LightView view = distantLightView(Vec3(0.3, 0.8, 0.45), boxOf(strands), 64);
+  const OnGpu gpu = upload(strands);
+  VisibilityOptions options;
+  options.layerSize = 0.02;
+  std::vector<double> bounds;
+  for (const int layers : {3, 7, 11, 15}) {
+    options.layers = layers;
+    bounds.push_back(HairMap::make(*programs, gpu.lines.get(), view, 1, options)->bound(*programs).mean);
+  }
+  ASSERT_LT(bounds[1], 0.97 * bounds[0]) << "or the test could not tell them apart";
+  ASSERT_LT(bounds[2], 0.97 * bounds[1]);
+  options.layers = 0;
+  const auto fewest = [&](double bound) {
+    options.bound = bound;
+    return HairMap::makeFewest(*programs, *gpu.lines, view, 1, options, false, {}).value();
+  };
+  EXPECT_EQ(fewest(1.001 * bounds[0]).options().layers, 3);
+  EXPECT_EQ(fewest(0.999 * bounds[0]).options().layers, 7);
+  EXPECT_EQ(fewest(1.001 * bounds[2]).options().layers, 11);
+  const HairMap impossible = fewest(1e-9);
+  EXPECT_LE(impossible.bound(*programs).mean, 1.03 * *std::ranges::min_element(bounds));
+  EXPECT_NE(impossible.choice().find("layers: bound"), std::string::npos) << impossible.choice();
+}
+
+TEST_F(HairMaps, SortShortListsInsteadOfLayering) {
+  const StrandSet few = clumps(30), many = clumps(4000);
+  for (const StrandSet* strands : {&few, &many}) {
+    const LightView view = distantLightView(Vec3(0.3, 0.8, 0.45), boxOf(*strands), 64);
+    const OnGpu gpu = upload(*strands);
+    VisibilityOptions options;
+    options.layers = 0, options.layerSize = 0.02;
+    const HairMap map = HairMap::makeFewest(*programs, *gpu.lines, view, 1, options, true, {}).value();
+    EXPECT_EQ(map.options().method,
+              strands == &few ? VisibilityMethod::Exact : VisibilityMethod::DeepOpacity);
+    // Never more than three layers and the lists' own table.
+    if (strands == &few) {
+      EXPECT_LE(map.bytes(), 64u * 64u * (24 + 8) + 4);
+    }
+    const HairMap layered = HairMap::makeFewest(*programs, *gpu.lines, view, 1, options, false, {}).value();
+    EXPECT_EQ(layered.options().method, VisibilityMethod::DeepOpacity) << "the switch is off";
   }
 }
 

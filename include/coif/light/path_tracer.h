@@ -16,19 +16,13 @@
 #include "coif/base/result.h"
 #include "coif/light/camera.h"
 #include "coif/light/fibre.h"
+#include "coif/light/ground.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
 #include "coif/scalp/polygon_mesh.h"
 #include "coif/strands/strand_set.h"
 
 namespace coif {
-
-/// A diffuse disc to stand on, seen from both sides.
-struct Ground {
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitY();  ///< normal of any length but zero
-  double radius = 1e30;                               ///< scene units
-  Vec3f color = Vec3f::Constant(0.5f);                ///< albedo, 0 … 1
-};
 
 /// What to look at. Pointers may be null and must outlive the call. Head and ground are diffuse; the head is
 /// shaded smoothly, and both sides alike.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/light/camera.h"
 #include "coif/light/fibre.h"
+#include "coif/light/ground.h"
 #include "coif/light/image.h"
 #include "coif/light/lights.h"
 #include "coif/light/visibility.h"
@@ -31,6 +33,7 @@ struct PreviewScene {
       nullptr;                   ///< `strands` are as grow() made them on this: the GPU makes their points
   Knots knots = Knots::Uniform;  ///< of grownOn
   const PolygonMesh* head = nullptr;
+  std::optional<Ground> ground;
   const HairMesh* hairMesh = nullptr;  ///< drawn over the picture: edges and faces, coloured by layer
   Camera camera;
   Lights lights;

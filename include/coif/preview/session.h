@@ -48,6 +48,7 @@ class PreviewSession {
 
   Status setHead(const PolygonMesh& head);  ///< errors: those of validate
   void clearHead();
+  Status setGround(std::optional<Ground> ground);  ///< none: nothing to stand on. Errors: those of validate
   void setOverlay(const HairMesh& mesh);  ///< edges and faces drawn over the picture, coloured by layer
   void clearOverlay();
   void setCamera(const Camera& camera);
