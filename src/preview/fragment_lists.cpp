@@ -6,7 +6,7 @@ namespace coif::preview {
 
 FragmentLists::FragmentLists(int width, int height)
     : width_(width), height_(height), counts_(makeTexture2d(GL_R32UI, width, height)) {
-  glClearTexImage(counts_.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  clearIntegers(counts_);
 }
 
 void FragmentLists::bindCounts() const {
@@ -38,7 +38,7 @@ Status FragmentLists::makeRoom(std::size_t entryBytes, std::size_t mostBytes) {
   glCreateBuffers(1, &name);
   list_ = Buffer(name);
   glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(sum * entryBytes, 16)), nullptr, 0);
-  glClearTexImage(counts_.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  clearIntegers(counts_);
   bytes_ = sum * entryBytes + starts.size() * 4 + texels * 4;
   return {};
 }

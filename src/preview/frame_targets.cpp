@@ -31,7 +31,7 @@ Result<FrameTargets> FrameTargets::create(int width, int height) {
 }
 
 void FrameTargets::clear() const {
-  glClearTexImage(sum_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
+  clearColor(sum_, {0, 0, 0, 0});
 }
 
 void FrameTargets::bind() const {

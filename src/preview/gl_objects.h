@@ -89,4 +89,23 @@ inline Texture makeTexture2d(GLenum format, int width, int height, int samples =
   return Texture(name);
 }
 
+/// Fills a texture, all layers of an array, by drawing: drivers fill by glClearTexImage at a gigabyte a
+/// second.
+inline void clearColor(const Texture& texture, const float (&value)[4]) {
+  const Framebuffer target = makeFramebuffer();
+  glNamedFramebufferTexture(target.name(), GL_COLOR_ATTACHMENT0, texture.name(), 0);
+  glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, value);
+}
+inline void clearIntegers(const Texture& texture) {
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const Framebuffer target = makeFramebuffer();
+  glNamedFramebufferTexture(target.name(), GL_COLOR_ATTACHMENT0, texture.name(), 0);
+  glClearNamedFramebufferuiv(target.name(), GL_COLOR, 0, nothing);
+}
+inline void clearDepth(const Texture& texture, float value) {
+  const Framebuffer target = makeFramebuffer();
+  glNamedFramebufferTexture(target.name(), GL_DEPTH_ATTACHMENT, texture.name(), 0);
+  glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &value);
+}
+
 }  // namespace coif::preview

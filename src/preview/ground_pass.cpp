@@ -4,9 +4,9 @@
 
 namespace coif::preview {
 
-double groundRadius(const Ground& ground, double sceneDiagonal) {
-  constexpr double kHorizon = 30;  // diagonals
-  return std::min(ground.radius, kHorizon * std::max(sceneDiagonal, 1e-9));
+double groundRadius(const Ground& ground, const Box& scene, const Vec3& eye) {
+  constexpr double kHorizon = 30;
+  return std::min(ground.radius, kHorizon * (scene.diagonal() + (eye - ground.point).norm()));
 }
 
 void drawGround(const Programs& programs, const VertexArray& empty, const Ground& ground, double radius,

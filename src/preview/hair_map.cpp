@@ -177,10 +177,14 @@ Texture HairMap::makeLayers(int count, GLenum format) {
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   const bool integers = format == GL_R32UI;
-  glClearTexImage(name, 0, integers ? GL_RED_INTEGER : GL_RGBA, integers ? GL_UNSIGNED_INT : GL_FLOAT,
-                  nullptr);
   bytes_ += std::size_t(view_.size) * std::size_t(view_.size) * std::size_t(count) * (integers ? 4 : 16);
-  return Texture(name);
+  Texture texture(name);
+  if (integers) {
+    clearIntegers(texture);
+  } else {
+    clearColor(texture, {0, 0, 0, 0});
+  }
+  return texture;
 }
 
 Texture HairMap::makeFlat(GLenum format) {
@@ -224,8 +228,7 @@ Status HairMap::draw(const Programs& programs, const StrandBuffers& lines) {
 
 void HairMap::drawRange(const Programs& programs, const StrandBuffers& lines) {
   range_ = makeFlat(GL_RG32F);
-  const float nothing[4] = {3e38f, 3e38f, 0, 0};
-  glClearTexImage(range_.name(), 0, GL_RG, GL_FLOAT, nothing);
+  clearColor(range_, {3e38f, 3e38f, 0, 0});
   const Framebuffer framebuffer = makeFramebuffer();
   glNamedFramebufferTexture(framebuffer.name(), GL_COLOR_ATTACHMENT0, range_.name(), 0);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());

@@ -79,23 +79,27 @@ std::vector<Vec3> skyDirections(const Vec3& up) {
   return result;
 }
 
-void light(LightVolume& grid, std::span<const float> optical, const Vec3 (&lights)[3], const Vec3& up,
-           const Context& context) {
+LightVolume lit(const LightVolume& empty, std::span<const float> optical, const Vec3 (&lights)[3],
+                const Vec3& up, const Context& context) {
   std::vector<Vec3> directions(lights, lights + 3);
   for (const Vec3& direction : skyDirections(up)) directions.push_back(direction);
   std::vector<std::vector<float>> depths(directions.size());
   parallelFor(context, directions.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(grid, optical, directions[d]);
+    for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(empty, optical, directions[d]);
   });
-  grid.values.assign(optical.size(), Vec4f::Zero());
+  LightVolume grid = empty;
+  grid.values.resize(optical.size());
   const float part = 1 / float(directions.size() - 3);
-  parallelFor(context, optical.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (int l = 0; l < 3; ++l) grid.values[i][l] = depths[std::size_t(l)][i];
-      for (std::size_t d = 3; d < depths.size(); ++d)
-        grid.values[i][3] += part * std::exp(-kSkyOpacity * depths[d][i]);
-    }
+  parallelFor(context, optical.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    const auto of = [&](std::size_t d) {
+      return Eigen::Map<const Eigen::ArrayXf>(depths[d].data() + begin, Eigen::Index(end - begin));
+    };
+    Eigen::ArrayXf sky = Eigen::ArrayXf::Zero(Eigen::Index(end - begin));
+    for (std::size_t d = 3; d < depths.size(); ++d) sky += part * (-kSkyOpacity * of(d)).exp();
+    for (std::size_t i = begin; i < end; ++i)
+      grid.values[i] = Vec4f(depths[0][i], depths[1][i], depths[2][i], sky[Eigen::Index(i - begin)]);
   });
+  return grid;
 }
 
 }  // namespace
@@ -106,51 +110,56 @@ std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const fl
   const std::array<std::size_t, 3> stride{1, std::size_t(grid.nx), std::size_t(grid.nx) * grid.ny};
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const double per = 1 / std::max(std::abs(direction[axis]), 1e-9);
-  const double du = direction[u] * per, dv = direction[v] * per;
+  const double du = direction[u] * per, dv = direction[v] * per;  // within ±1
   const bool fromHigh = direction[axis] > 0;
-
-  std::vector<float> result(opticalSize.size(), 0.0f);
-  std::vector<float> before(std::size_t(size[u]) * size[v], 0.0f), after(before.size());
-  const auto upstream = [&](double x, double y) {
-    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-    const float fx = float(x - x0), fy = float(y - y0);
-    const auto at = [&](int i, int j) {
-      return i < 0 || j < 0 || i >= size[u] || j >= size[v] ? 0.0f : before[std::size_t(j) * size[u] + i];
-    };
-    return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
-           fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+  // The cell upstream is the same step away everywhere: four constant weights, and a border of nothing.
+  const int x0 = int(std::floor(du)), y0 = int(std::floor(dv));
+  const float fx = float(du - x0), fy = float(dv - y0);
+  const float w00 = (1 - fy) * (1 - fx), w10 = (1 - fy) * fx, w01 = fy * (1 - fx), w11 = fy * fx;
+  constexpr int kBorder = 2;
+  const std::size_t width = std::size_t(size[u] + 2 * kBorder);
+  std::vector<float> before(width * std::size_t(size[v] + 2 * kBorder), 0.0f), after(before.size(), 0.0f);
+  const auto row = [&](std::vector<float>& slice, int j) {
+    return &slice[std::size_t(j + kBorder) * width + kBorder];
   };
+  std::vector<float> result(opticalSize.size(), 0.0f), own(std::size_t(size[u]));
   for (int k = 0; k < size[axis]; ++k) {
     const std::size_t slice = std::size_t(fromHigh ? size[axis] - 1 - k : k) * stride[axis];
     for (int j = 0; j < size[v]; ++j) {
-      for (int i = 0; i < size[u]; ++i) {
-        const std::size_t index = slice + std::size_t(j) * stride[v] + std::size_t(i) * stride[u];
-        const float in = upstream(i + du, j + dv), own = opticalSize[index] * float(per);
-        result[index] = in + 0.5f * own;
-        after[std::size_t(j) * size[u] + i] = in + own;
-      }
+      const std::size_t start = slice + std::size_t(j) * stride[v], step = stride[u];
+      const float *near = row(before, j + y0) + x0, *far = row(before, j + y0 + 1) + x0;
+      float* out = row(after, j);
+      for (int i = 0; i < size[u]; ++i)
+        own[std::size_t(i)] = opticalSize[start + std::size_t(i) * step] * float(per);
+      for (int i = 0; i < size[u]; ++i)
+        out[i] = w00 * near[i] + w10 * near[i + 1] + w01 * far[i] + w11 * far[i + 1] + own[std::size_t(i)];
+      for (int i = 0; i < size[u]; ++i)
+        result[start + std::size_t(i) * step] = out[i] - 0.5f * own[std::size_t(i)];
     }
     std::swap(before, after);
   }
   return result;
 }
 
-LightVolumes makeLightVolumes(const CoarseStrands& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
-                              const Vec3& up, const Context& context) {
+Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head) {
+  Fog fog;
+  if (strands.points.empty()) return fog;
+  fog.grid = makeGrid(strands.box);
+  fog.hairOnly = hairOpticalSize(fog.grid, strands);
+  if (head == nullptr) return fog;
+  fog.withHead = fog.hairOnly;
+  addHead(fog.grid, *head, fog.withHead);
+  return fog;
+}
+
+LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
+                              const Context& context) {
   LightVolumes result;
-  if (strands.points.empty()) return result;
-  result.hairOnly = makeGrid(strands.box);
-  result.withHead = result.hairOnly;
-  std::vector<float> optical = hairOpticalSize(result.hairOnly, strands);
-  light(result.hairOnly, optical, lights, up, context);
-  if (head == nullptr) {
-    result.withHead = result.hairOnly;
-    return result;
-  }
-  addHead(result.withHead, *head, optical);
-  light(result.withHead, optical, lights, up, context);
+  if (fog.hairOnly.empty()) return result;
+  result.hairOnly = lit(fog.grid, fog.hairOnly, lights, up, context);
+  result.withHead = fog.withHead.empty() ? result.hairOnly : lit(fog.grid, fog.withHead, lights, up, context);
   return result;
 }
 

@@ -25,12 +25,20 @@ struct LightVolumes {
   LightVolume withHead;  ///< the head stops light too: for the hair's
 };
 
-/// The extinction of a cell is Σ length · diameter · π/4 over its volume: randomly oriented fibres. Each
-/// direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear in the
-/// number of cells. `lights` are unit vectors towards the light, `up` the sky's middle. Deterministic for any
-/// number of threads.
-LightVolumes makeLightVolumes(const CoarseStrands& strands, const PolygonMesh* head, const Vec3 (&lights)[3],
-                              const Vec3& up, const Context& context);
+/// What does not depend on the light: the extinction of each cell times its size.
+struct Fog {
+  LightVolume grid;                       ///< without values
+  std::vector<float> hairOnly, withHead;  ///< the latter empty without a head
+};
+
+/// The extinction of a cell is Σ length · diameter · π/4 over its volume: randomly oriented fibres.
+Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head);
+
+/// Each direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear
+/// in the number of cells. `lights` are unit vectors towards the light, `up` the sky's middle. Deterministic
+/// for any number of threads.
+LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
+                              const Context& context);
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,

@@ -34,8 +34,8 @@ class HeadBuffers {
 /// A disc lit like the head, with the shadow of head and hair; what shadows it must be bound.
 void drawGround(const Programs& programs, const VertexArray& empty, const Ground& ground, double radius,
                 const VisibilityOptions& visibility);
-/// Its own, or as far as one looks in a scene of that diagonal.
-double groundRadius(const Ground& ground, double sceneDiagonal);
+/// Its own, or as far as one can make out: a multiple of the scene's size and the eye's distance.
+double groundRadius(const Ground& ground, const Box& scene, const Vec3& eye);
 
 /// Places the key light's map over the scene and fills the fields of `frame` that say how it lies.
 LightView placeShadowMap(const Box& scene, const Box& hair, int mapSize, FrameData& frame);
@@ -52,8 +52,8 @@ class ShadowPass {
   /// `lists`: sorted lists may take the place of a number of layers that is to be chosen.
   static Result<ShadowPass> make(const Programs& programs, const LightView& view,
                                  const VisibilityOptions& options, bool lists, const CoarseStrands* strands,
-                                 const StrandBuffers* lines, const PolygonMesh* head,
-                                 const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
+                                 const Fog* fog, const StrandBuffers* lines, const HeadBuffers* headBuffers,
+                                 FrameData& frame, const Context& context);
   void bindForHair() const;
   void bindForHead() const { bind(hairOnly_); }
   const HairMap& map() const { return map_; }

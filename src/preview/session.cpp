@@ -15,6 +15,7 @@ PreviewSession::Impl::~Impl() {
 void PreviewSession::Impl::dropHair() {
   eyeStrands.reset(), shadowStrands.reset(), hairBuffers.reset(), shadows.reset();
   eyeLines.reset(), cameraMap.reset();
+  fog.reset();
 }
 
 PreviewSession::PreviewSession(PreviewSession&&) noexcept = default;
@@ -70,6 +71,7 @@ Status PreviewSession::setHead(const PolygonMesh& head) {
 
 void PreviewSession::clearHead() {
   impl_->withContext([&] { impl_->headBuffers.reset(), impl_->shadows.reset(); });
+  impl_->fog.reset();
   impl_->head.reset();
 }
 

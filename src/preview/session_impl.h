@@ -28,6 +28,7 @@ struct PreviewSession::Impl {
   std::unique_ptr<HairBuffers> hairBuffers;
   std::unique_ptr<StrandBuffers> eyeStrands, shadowStrands;
   bool eyeOld = false, shadowOld = false;  ///< made before the mesh moved
+  std::unique_ptr<Fog> fog;                ///< of hair and head as they are
   std::unique_ptr<ShadowPass> shadows;
   FrameData shadowFrame;  ///< of the picture that `shadows` was made for
   bool shadowsHaveHair = false;

@@ -8,7 +8,8 @@ namespace coif {
 namespace {
 
 constexpr std::size_t kSoftwareSegments = 450000, kHardwareSegments = 12000000;
-constexpr int kSoftwareMap = 1024, kHardwareMap = 2048;
+constexpr int kMapSize =
+    1024;  // finer ones resolve single hairs, which few layers cannot follow (docs/visibility.md)
 
 Status checkOptions(const PreviewOptions& options) {
   if (options.width < 1 || options.height < 1 || options.width > 8192 || options.height > 8192) {
@@ -128,7 +129,7 @@ Box PreviewSession::Impl::seenBox() const {
   Box seen = box();
   bool any = seen.diagonal() > 0;
   if (ground) {
-    const double radius = groundRadius(*ground, seen.diagonal());
+    const double radius = groundRadius(*ground, seen, camera.eye);
     const Vec3 reach =
         radius * (Vec3::Ones() - ground->normal.cwiseAbs2()).cwiseMax(0).cwiseSqrt();  // of a disc, by axis
     include(seen, any, {ground->point - reach, ground->point + reach});
@@ -155,6 +156,7 @@ void PreviewSession::Impl::upload(Picture& picture) {
   if (hair->model.synthesised && (first || hairMoved)) {
     picture.uploaded.hairMesh = hairBuffers->move(hair->model);
     eyeOld = shadowOld = eyeLinesOld = true;
+    fog.reset();
   }
   hairMoved = false;
   report(picture, "hair", first ? StageState::Ran : StageState::Reused,
@@ -224,8 +226,9 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   const bool withHair = hair && options.shadows;
   const VisibilityMethod method = options.visibility.method;
   const bool needsLines = method != VisibilityMethod::None && method != VisibilityMethod::LightMap;
-  const bool moved = withHair && ((shadowStrands == nullptr && needsLines) || shadowOld ||
-                                  shadowDetail != mapDetailOf(options, *device));
+  const bool otherLines =
+      needsLines && (shadowStrands == nullptr || shadowOld || shadowDetail != mapDetailOf(options, *device));
+  const bool moved = withHair && (otherLines || fog == nullptr);
   const bool light = sameLight(frame, shadowFrame);
   if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair &&
       sameMap(options.visibility, shadowOptions)) {
@@ -235,8 +238,8 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
            withHair ? "light and hair did not move" : "no hair, or shadows are off");
     return {};
   }
-  const int mapSize = device->gl->software() ? kSoftwareMap : kHardwareMap;
-  const LightView lightView = placeShadowMap(box(), hair ? hair->model.coarse.box : box(), mapSize, frame);
+
+  const LightView lightView = placeShadowMap(box(), hair ? hair->model.coarse.box : box(), kMapSize, frame);
   if (withHair && needsLines) makeShadowStrands(options, frame, picture, context);
   StageReport& stage = report(picture, "shadow maps", withHair ? StageState::Ran : StageState::Skipped,
                               !withHair            ? "no hair, or shadows are off"
@@ -247,10 +250,11 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   const StageTimer timer(stage, options.measure);
   shadows.reset();
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+  if (withHair && fog == nullptr) fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
   COIF_ASSIGN(ShadowPass made,
               ShadowPass::make(*device->programs, lightView, options.visibility, options.leaveOut,
-                               withHair ? &hair->model.coarse : nullptr,
-                               withHair && needsLines ? shadowStrands.get() : nullptr, head.get(),
+                               withHair ? &hair->model.coarse : nullptr, withHair ? fog.get() : nullptr,
+                               withHair && needsLines ? shadowStrands.get() : nullptr,
                                options.shadows ? headBuffers.get() : nullptr, frame, context));
   shadows = std::make_unique<ShadowPass>(std::move(made));
   stage.bytes = shadows->map().bytes();
@@ -371,7 +375,7 @@ Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
   }
   if (ground) {
     shadows->bindForHead();
-    drawGround(programs, device->empty, *ground, groundRadius(*ground, box().diagonal()),
+    drawGround(programs, device->empty, *ground, groundRadius(*ground, box(), camera.eye),
                shadows->map().options());
   }
   if (hair) {

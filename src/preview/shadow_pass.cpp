@@ -27,8 +27,7 @@ Texture uploadVolume(const LightVolume& volume) {
 // The first surface of the head from the light, as a part of the map's range of depth.
 Texture drawHead(const Programs& programs, const HeadBuffers* head, int size) {
   Texture map = makeTexture2d(GL_DEPTH_COMPONENT32F, size, size);
-  const float farthest = 1;
-  glClearTexImage(map.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, &farthest);
+  clearDepth(map, 1);
   if (head == nullptr) return map;
   const Framebuffer target = makeFramebuffer();
   glNamedFramebufferTexture(target.name(), GL_DEPTH_ATTACHMENT, map.name(), 0);
@@ -73,16 +72,16 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 
 Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& view,
                                     const VisibilityOptions& options, bool lists,
-                                    const CoarseStrands* strands, const StrandBuffers* lines,
-                                    const PolygonMesh* head, const HeadBuffers* headBuffers, FrameData& frame,
+                                    const CoarseStrands* strands, const Fog* fog, const StrandBuffers* lines,
+                                    const HeadBuffers* headBuffers, FrameData& frame,
                                     const Context& context) {
   ShadowPass pass;
   LightVolumes volumes;
-  if (strands != nullptr) {
+  if (fog != nullptr) {
     const Vec3 lights[3] = {frame.lightDirection[0].head<3>().cast<double>(),
                             frame.lightDirection[1].head<3>().cast<double>(),
                             frame.lightDirection[2].head<3>().cast<double>()};
-    volumes = makeLightVolumes(*strands, head, lights, frame.viewUp.head<3>().cast<double>(), context);
+    volumes = makeLightVolumes(*fog, lights, frame.viewUp.head<3>().cast<double>(), context);
   }
   const LightVolume& volume = volumes.hairOnly;
   frame.volumeLo << volume.lo.cast<float>(), float(volume.cell);

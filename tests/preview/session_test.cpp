@@ -78,6 +78,24 @@ TEST_F(Sessions, ANewLightUploadsNoStrandDataAndKeepsTheStrands) {
   EXPECT_EQ(stateOf(lit, "shadow maps"), StageState::Ran);
 }
 
+TEST_F(Sessions, EveryShadowMethodIsKeptWhileLightAndHairAre) {
+  for (const VisibilityMethod method :
+       {VisibilityMethod::Opacity, VisibilityMethod::DensityClustering, VisibilityMethod::LightMap,
+        VisibilityMethod::DeepOpacity, VisibilityMethod::Occupancy, VisibilityMethod::Exact}) {
+    PreviewSession session = this->session(mesh_, strands_);
+    PreviewOptions options = small(48, 1);
+    options.visibility.method = method;
+    options.visibility.slices = 8;
+    picture(session, options);
+    EXPECT_EQ(stateOf(picture(session, options), "shadow maps"), StageState::Reused) << name(method);
+    std::vector<Vec3> positions;
+    for (const HairVertex& v : mesh_.vertices()) positions.push_back(v.position + Vec3(0.01, 0, 0));
+    ASSERT_TRUE(session.moveHair(positions).ok());
+    EXPECT_EQ(stateOf(picture(session, options), "shadow maps"), StageState::Ran) << name(method);
+    EXPECT_EQ(stateOf(picture(session, options), "shadow maps"), StageState::Reused) << name(method);
+  }
+}
+
 TEST_F(Sessions, MovingTheMeshUploadsTheMeshAlone) {
   PreviewSession session = this->session(mesh_, strands_);
   const PreviewOptions options = small(96, 1);

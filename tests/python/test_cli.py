@@ -179,3 +179,30 @@ def test_render_methods_give_pictures_of_their_own(scenes, tmp_path, option, wor
                         "400", option, word], check=True)
         pictures.add((tmp_path / "p.png").read_bytes())
     assert len(pictures) == len(words)
+
+
+def test_hair_in_motion_is_a_picture_a_frame(scenes, tmp_path):
+    scene, cache = scenes / "long.coif", tmp_path / "long.coifcache"
+    motion = tmp_path / "turn.txt"  # a quarter turn to the left and back to where it was, about the up axis
+    turns = [0, 0.38268, 0.70711, 0.38268, 0]
+    motion.write_text("".join(f"0 0 0 0 {y} 0 {(1 - y * y) ** 0.5}\n" for y in turns))
+    run("simulate", scene, "--frames", 5, "--head-motion", motion, "-o", cache)
+    small = ["--size", "64x64", "--strands", 2000]
+    done = run_json("render", scene, "-o", tmp_path / "m.png", "--motion", cache, "--frames", "2-4", *small)
+    assert [pathlib.Path(p["picture"]).name for p in done["pictures"]] == ["m_0002.png", "m_0003.png", "m_0004.png"]
+    pictures = [(tmp_path / f"m_{k:04}.png").read_bytes() for k in (2, 3, 4)]
+    assert len(set(pictures)) == 3
+    # The first frame is the style as it was modelled: the picture without any motion.
+    run("render", scene, "-o", tmp_path / "still.png", *small)
+    run("render", scene, "-o", tmp_path / "first.png", "--motion", cache, "--frames", "1", *small)
+    still, first = ((tmp_path / name).read_bytes() for name in ("still.png", "first_0001.png"))
+    assert still == first
+    # Simulated on the way, without a head's motion, is what the cache of that simulation holds.
+    run("simulate", scene, "--frames", 3, "-o", tmp_path / "own.coifcache")
+    run("render", scene, "-o", tmp_path / "a.png", "--frames", "3-3", *small)
+    run("render", scene, "-o", tmp_path / "b.png", "--frames", "3-3", "--motion", tmp_path / "own.coifcache", *small)
+    assert (tmp_path / "a_0003.png").read_bytes() == (tmp_path / "b_0003.png").read_bytes()
+    assert "no frame 9" in run("render", scene, "-o", tmp_path / "m.png", "--motion", cache, "--frames", "9",
+                               status=1).stderr
+    assert "another hair mesh" in run("render", scenes / "bob.coif", "-o", tmp_path / "m.png", "--motion", cache,
+                                      status=1).stderr
