@@ -1,7 +1,6 @@
 #include "keys.h"
 
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <map>
@@ -10,13 +9,18 @@ namespace coif::studio {
 namespace {
 
 int codeOf(const std::string& name) {
-  static const std::map<std::string, int> named = {
-      {"NumpadAdd", GLFW_KEY_KP_ADD},   {"NumpadSubtract", GLFW_KEY_KP_SUBTRACT},
-      {"Home", GLFW_KEY_HOME},          {"Tab", GLFW_KEY_TAB},
-      {"Escape", GLFW_KEY_ESCAPE},      {"Enter", GLFW_KEY_ENTER},
-      {"Space", GLFW_KEY_SPACE},        {"Delete", GLFW_KEY_DELETE},
-      {"Backspace", GLFW_KEY_BACKSPACE}};
+  static const std::map<std::string, int> named = {{"NumpadAdd", GLFW_KEY_KP_ADD},
+                                                   {"NumpadSubtract", GLFW_KEY_KP_SUBTRACT},
+                                                   {"NumpadDecimal", GLFW_KEY_KP_DECIMAL},
+                                                   {"Home", GLFW_KEY_HOME},
+                                                   {"Tab", GLFW_KEY_TAB},
+                                                   {"Escape", GLFW_KEY_ESCAPE},
+                                                   {"Enter", GLFW_KEY_ENTER},
+                                                   {"Space", GLFW_KEY_SPACE},
+                                                   {"Delete", GLFW_KEY_DELETE},
+                                                   {"Backspace", GLFW_KEY_BACKSPACE}};
   if (const auto found = named.find(name); found != named.end()) return found->second;
+  if (name.size() == 7 && name.starts_with("Numpad")) return GLFW_KEY_KP_0 + (name.back() - '0');
   if (name.size() == 1) return name.front();  // GLFW's codes of letters and digits are their ASCII codes
   if (name.size() > 1 && name.front() == 'F') return GLFW_KEY_F1 + std::stoi(name.substr(1)) - 1;
   return GLFW_KEY_UNKNOWN;
@@ -24,8 +28,16 @@ int codeOf(const std::string& name) {
 
 }  // namespace
 
-bool Keys::pressed(const std::string& key) const {
-  if (key.empty() || downs_.empty()) return false;
+bool Keys::pressed(const std::string& keys) const {
+  if (downs_.empty()) return false;
+  for (std::size_t from = 0, to; from < keys.size(); from = to + 1) {
+    to = std::min(keys.find(' ', from), keys.size());
+    if (pressedOne(keys.substr(from, to - from))) return true;
+  }
+  return false;
+}
+
+bool Keys::pressedOne(const std::string& key) const {
   int modifiers = 0;
   std::size_t from = 0;
   for (std::size_t plus; (plus = key.find('+', from)) != std::string::npos; from = plus + 1) {
@@ -33,14 +45,19 @@ bool Keys::pressed(const std::string& key) const {
     modifiers |= modifier == "Ctrl" ? GLFW_MOD_CONTROL : modifier == "Shift" ? GLFW_MOD_SHIFT : GLFW_MOD_ALT;
   }
   const int code = codeOf(key.substr(from));
-  return std::ranges::any_of(downs_,
-                             [&](const Down& d) { return d.key == code && d.modifiers == modifiers; });
+  return code != GLFW_KEY_UNKNOWN && std::ranges::any_of(downs_, [&](const Down& d) {
+           return d.key == code && d.modifiers == modifiers;
+         });
 }
 
-std::string typedNumber() {
+std::string Keys::typed() const {
   std::string out;
-  for (const ImWchar c : ImGui::GetIO().InputQueueCharacters) {
-    if ((c >= '0' && c <= '9') || c == '.' || c == '-') out += char(c);
+  for (const Down& d : downs_) {
+    if (d.character != 0 && d.character < 128 &&
+        std::string("0123456789.-").find(char(d.character)) != std::string::npos)
+      out += char(d.character);
+    if (d.key == GLFW_KEY_TAB && d.modifiers == 0) out += '\t';
+    if (d.key == GLFW_KEY_BACKSPACE) out += '\b';
   }
   return out;
 }

@@ -10,19 +10,22 @@ namespace coif::studio {
 /// frame: in a slow frame a key may go down and up again.
 class Keys {
  public:
-  void down(int key, int modifiers) { downs_.push_back({key, modifiers}); }
+  void down(int key, int modifiers) { downs_.push_back({key, modifiers, 0}); }
+  void character(unsigned codepoint) { downs_.push_back({0, 0, codepoint}); }
+  /// What was typed of "0 … 9 . -", and Tab as '\t' and Backspace as '\b', in order.
+  std::string typed() const;
+  bool none() const { return downs_.empty(); }
   void clear() { downs_.clear(); }
-  /// Whether the combination went down, with just these modifiers.
-  bool pressed(const std::string& key) const;
+  /// Whether one of the combinations (spaces between) went down, with just these modifiers.
+  bool pressed(const std::string& keys) const;
 
  private:
+  bool pressedOne(const std::string& key) const;
   struct Down {
     int key, modifiers;
+    unsigned character;  // of a character as the keyboard's layout has it; then there is no key
   };
   std::vector<Down> downs_;
 };
-
-/// 0 … 9, '.' and '-' typed in this frame, for numbers typed while a tool runs.
-std::string typedNumber();
 
 }  // namespace coif::studio

@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
   app.add_option("--size", size, "The window, WIDTHxHEIGHT");
   app.add_option("--trace", options.trace, "Write how long each part of a frame took, for chrome://tracing");
   app.add_option("--python-log", options.pythonLog, "Append each command that is done, as a line of Python");
+  bool listCommands = false;
+  app.add_flag("--list-commands", listCommands, "Print every command with menu and key as JSON, and end");
   CLI11_PARSE(app, argc, argv);
   int width = 0, height = 0;
   if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || width < 200 || height < 100 ||
@@ -31,6 +33,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   Studio studio(**window, options);
+  if (listCommands) {
+    std::cout << studio.commandList() << "\n";
+    return 0;
+  }
   (*window)->run([&] { return studio.frame(); }, [&] { return studio.mayClose(); });
   if (const coif::Status traced = studio.finish(); !traced.ok()) {
     std::cerr << "coif-studio: " << traced.error().text() << "\n";

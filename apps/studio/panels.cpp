@@ -49,32 +49,6 @@ void Studio::drawPanels() {
   view_.place({at.x + (roomy ? left : 0), at.y}, {size.x - (roomy ? left + right : 0), height});
 }
 
-void Studio::drawToolPanel() {
-  ImGui::TextUnformatted("Select");
-  for (const auto& [label, kind] :
-       {std::pair("Vertices  1", SelectKind::Vertex), std::pair("Edges  2", SelectKind::Edge),
-        std::pair("Faces  3", SelectKind::Face)}) {
-    if (ImGui::RadioButton(label, view_.settings.kind == kind)) view_.settings.kind = kind;
-  }
-  ImGui::Separator();
-  ImGui::TextUnformatted("Soft selection");
-  ImGui::SetNextItemWidth(-1);
-  float radius = float(softRadius_);
-  if (ImGui::DragFloat("##soft", &radius, 0.01f, 0, 1e6f, radius > 0 ? "radius %.3f" : "off"))
-    softRadius_ = radius;
-  bool symmetric = document_ && document_->editor.state().symmetric;
-  if (ImGui::Checkbox("Symmetric", &symmetric)) run("symmetry", {{"on", symmetric}});
-  ImGui::Separator();
-  for (const CommandInfo& info : commandInfos()) {
-    if (info.menu != "Mesh" && info.menu != "Move") continue;
-    if (info.name == "displace") continue;
-    if (ImGui::Button(info.label.c_str(), {-1, 0})) run(info.name);
-    if (ImGui::IsItemHovered()) {
-      ImGui::SetTooltip("%s\n%s", info.help.c_str(), settings_.keyOf(info.name).c_str());
-    }
-  }
-}
-
 bool Studio::drawArgument(const CommandArgument& argument, CommandArguments& values) const {
   CommandValue value = values.contains(argument.name) ? values[argument.name] : argument.standard;
   bool changed = false;

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "coif/io/safe_file.h"
-#include "coif/scene/command.h"
 #include "document.h"
 
 namespace coif::studio {
@@ -12,6 +11,36 @@ namespace {
 
 std::filesystem::path settingsFile() {
   return stateFolder() / "studio.json";
+}
+
+/// Where Maya's keys are others than Blender's.
+const std::map<std::string, std::string>& mayaKeys() {
+  static const std::map<std::string, std::string> keys = {
+      {"kind_vertex", "F9"},
+      {"kind_edge", "F10"},
+      {"kind_face", "F11"},
+      {"extrude", "Ctrl+E"},
+      {"divide_edges", "Alt+E"},
+      {"frame_all", "A"},
+      {"select_all", "Ctrl+Shift+A"},
+      {"hide", "Ctrl+H"},
+      {"show_all", "Ctrl+Shift+H"},
+      {"undo", "Ctrl+Z"},
+      {"redo", "Ctrl+Y Shift+Z"},
+      {"weld_edges", "Shift+M"},
+      {"mesh_next", "4"},
+      {"kind_bundle", "F8"},
+      {"kind_layer", ""},
+      {"kind_group", ""},
+      {"hand_select", "Q Escape"},
+      {"hand_move", "W"},
+      {"hand_rotate", "E"},
+      {"hand_scale", "R"},
+      {"rotate", "Shift+T"},
+      {"scale", "Shift+Y"},
+      {"soft_selection", "B"},
+  };
+  return keys;
 }
 
 }  // namespace
@@ -50,10 +79,12 @@ void Settings::addRecent(const std::filesystem::path& path) {
   if (recent.size() > 10) recent.resize(10);
 }
 
-std::string Settings::keyOf(const std::string& command) const {
-  if (const auto own = keys.find(command); own != keys.end()) return own->second;
-  const CommandInfo* info = findCommand(command);
-  return info == nullptr ? std::string() : info->key;
+std::string Settings::keyOf(const std::string& name, const std::string& standard) const {
+  if (const auto own = keys.find(name); own != keys.end()) return own->second;
+  if (mayaMouse) {
+    if (const auto habit = mayaKeys().find(name); habit != mayaKeys().end()) return habit->second;
+  }
+  return standard;
 }
 
 }  // namespace coif::studio

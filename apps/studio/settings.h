@@ -18,7 +18,8 @@ struct Settings {
   static Settings load();  ///< defaults where there is none or it cannot be understood
   Status save() const;
   void addRecent(const std::filesystem::path& path);
-  std::string keyOf(const std::string& command) const;  ///< own, else the command's default
+  /// The artist's own, else the habit's, else `standard`.
+  std::string keyOf(const std::string& name, const std::string& standard) const;
 };
 
 }  // namespace coif::studio

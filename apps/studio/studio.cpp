@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 
 #include "coif/base/random.h"
@@ -12,14 +13,20 @@
 namespace coif::studio {
 namespace {
 
-constexpr double kAutosaveSeconds = 30, kFineAfterSeconds = 0.35;
+constexpr double kAutosaveSeconds = 30, kFineAfterSeconds = 0.35, kNoteSeconds = 4;
 constexpr std::size_t kDraftSegments = 60000;
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+/// 1, 2 or 5 times a power of ten, about as large.
+double niceStep(double size) {
+  const double power = std::pow(10, std::floor(std::log10(std::max(size, 1e-12))));
+  return size < 2 * power ? power : size < 5 * power ? 2 * power : 5 * power;
 }
 
 }  // namespace
+
+double secondsNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 Studio::Studio(Window& window, StudioOptions options)
     : window_(window),
@@ -28,6 +35,7 @@ Studio::Studio(Window& window, StudioOptions options)
       trace_(options_.trace),
       pictures_(std::make_unique<PictureWorker>(&Window::wake)),
       leftBehind_(Document::leftBehind()) {
+  actions_ = makeActions();
   settings_.lightTheme ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
   view_.settings.habit = settings_.mayaMouse ? MouseHabit::Maya : MouseHabit::Blender;
   tourOpen_ = settings_.recent.empty() && options_.open.empty();
@@ -39,6 +47,7 @@ Studio::~Studio() = default;
 void Studio::say(std::string message, bool problem) {
   message_ = std::move(message);
   messageIsProblem_ = problem;
+  if (problem) note_ = message_, noteUntil_ = secondsNow() + kNoteSeconds;
 }
 
 void Studio::run(const std::string& command, const CommandArguments& arguments) {
@@ -56,7 +65,7 @@ void Studio::run(const std::string& command, const CommandArguments& arguments) 
     }
   }
   // A first change is worth a copy at once; later ones wait their turn.
-  if (lastAutosave_ == 0) lastAutosave_ = now() - kAutosaveSeconds + 2;
+  if (lastAutosave_ == 0) lastAutosave_ = secondsNow() - kAutosaveSeconds + 2;
   if (command != "undo" && command != "redo") lastCommand_ = command, lastArguments_ = arguments;
 }
 
@@ -72,7 +81,7 @@ void Studio::openPath(const std::filesystem::path& path, const std::string& styl
 
 void Studio::adopt(std::unique_ptr<Document> document) {
   document_ = std::move(document);
-  tool_.reset(), attempt_.reset();
+  tool_.reset(), forgetAttempt();
   lastCommand_.clear();
   const Scene& scene = document_->editor.scene();
   view_.upAxis = scene.upAxis;
@@ -80,6 +89,7 @@ void Studio::adopt(std::unique_ptr<Document> document) {
   std::vector<Vec3> points;
   for (const HairVertex& vertex : scene.hairMesh.vertices()) points.push_back(vertex.position);
   if (!points.empty()) box = bounds(points);
+  tools_.snap.step = niceStep(0.02 * (box.hi - box.lo).norm());
   view_.camera = frameBox(box, scene.upAxis, scene.look.azimuthDeg, scene.look.elevationDeg, view_.aspect());
   if (!document_->headProblem.empty()) {
     say(document_->headProblem, true);
@@ -110,11 +120,11 @@ void Studio::exportTo(const std::filesystem::path& path) {
 
 void Studio::autosave() {
   if (!document_ || !document_->editor.modified()) return;
-  if (now() - lastAutosave_ < kAutosaveSeconds) {
-    if (document_->needsAutosave()) window_.wakeWithin(kAutosaveSeconds - (now() - lastAutosave_));
+  if (secondsNow() - lastAutosave_ < kAutosaveSeconds) {
+    if (document_->needsAutosave()) window_.wakeWithin(kAutosaveSeconds - (secondsNow() - lastAutosave_));
     return;
   }
-  lastAutosave_ = now();
+  lastAutosave_ = secondsNow();
   if (const Status status = document_->autosave(); !status.ok())
     say("autosave: " + status.error().text(), true);
 }
@@ -137,10 +147,11 @@ void Studio::askForPicture(bool moving) {
   for (const Vec3& v : {view_.camera.eye, view_.camera.target, Vec3(view_.camera.fovDeg, 0, 0)}) {
     for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
   }
-  if (attempt_) key = hashCombine(key, meshHash(*attempt_));
+  if (attempt_) key = hashCombine(key, attemptNumber_);
   const bool changed = key != askedKey_;
-  if (changed) askedKey_ = key, lastChange_ = now(), fine_ = false;
-  const bool rested = !moving && !fine_ && !pictures_->busy() && now() - lastChange_ > kFineAfterSeconds;
+  if (changed) askedKey_ = key, lastChange_ = secondsNow(), fine_ = false;
+  const bool rested =
+      !moving && !fine_ && !pictures_->busy() && secondsNow() - lastChange_ > kFineAfterSeconds;
   if (!fine_ && !rested) window_.wakeWithin(kFineAfterSeconds);
   if (!changed && !rested) return;
 
@@ -176,65 +187,12 @@ void Studio::takePictures() {
 }
 
 void Studio::takeKeys() {
-  if (ImGui::GetIO().WantTextInput || tool_) return;
-  if (window_.keys().pressed("F3") || window_.keys().pressed("Ctrl+Space"))
-    paletteOpen_ = true, paletteText_.clear();
-  if (window_.keys().pressed("Ctrl+O")) askPath(PathUse::Open);
-  if (window_.keys().pressed("Ctrl+S"))
-    document_ && !document_->path.empty() ? saveTo(document_->path) : askPath(PathUse::SaveAs);
-  if (window_.keys().pressed("Ctrl+Shift+E")) askPath(PathUse::Export);
-  if (window_.keys().pressed("F12")) askPath(PathUse::Screenshot);
-  if (window_.keys().pressed("1")) view_.settings.kind = SelectKind::Vertex;
-  if (window_.keys().pressed("2")) view_.settings.kind = SelectKind::Edge;
-  if (window_.keys().pressed("3")) view_.settings.kind = SelectKind::Face;
-  if (window_.keys().pressed("Home") && document_) view_.frame(document_->editor.mesh(), {});
-  if (window_.keys().pressed("F") && document_)
-    view_.frame(document_->editor.mesh(), document_->editor.state().selection);
-  if (window_.keys().pressed("Z")) view_.settings.mesh = MeshStyle((int(view_.settings.mesh) + 1) % 3);
-  if (!document_ || !view_.screen()) return;
-  using Kind = ModalTool::Kind;
-  for (const auto& [command, kind] : {std::pair("translate", Kind::Move), std::pair("rotate", Kind::Rotate),
-                                      std::pair("scale", Kind::Scale), std::pair("extrude", Kind::Extrude)}) {
-    if (!window_.keys().pressed(settings_.keyOf(command))) continue;
-    if (document_->editor.state().selection.empty()) return say("select something first", true);
-    tool_.emplace(kind, document_->editor, view_, softRadius_);
+  if (ImGui::GetIO().WantTextInput || window_.keys().none()) return;
+  for (const MenuEntry& entry : entries()) {
+    if (!window_.keys().pressed(entry.key)) continue;
+    carryOut(entry);
     return;
   }
-  for (const CommandInfo& info : commandInfos()) {
-    const std::string key = settings_.keyOf(info.name);
-    if (key.empty() || !window_.keys().pressed(key)) continue;
-    CommandArguments arguments;
-    for (const CommandArgument& argument : info.arguments) {
-      if (argument.name != "kind") continue;
-      arguments["kind"] = argument.choices[std::size_t(view_.settings.kind)];
-    }
-    return run(info.name, arguments);
-  }
-}
-
-void Studio::takeTools() {
-  if (!document_ || !view_.screen()) return;
-  if (tool_) {
-    const Trace::Span span(trace_, "drag");
-    tool_->update(view_, window_.keys());
-    const CommandArguments arguments = tool_->arguments(view_);
-    if (tool_->dropped()) {
-      tool_.reset(), attempt_.reset();
-    } else if (tool_->confirmed()) {
-      const std::string command = tool_->command();
-      tool_.reset(), attempt_.reset();
-      run(command, arguments);
-    } else {
-      auto attempt = document_->editor.attempt(tool_->command(), arguments);
-      if (attempt.ok()) {
-        attempt_ = std::move(*attempt);
-      } else {
-        say(attempt.error().text(), true);
-      }
-    }
-    return;
-  }
-  if (const auto arguments = select_.update(view_)) run("select", *arguments);
 }
 
 bool Studio::frame() {
@@ -249,31 +207,25 @@ bool Studio::frame() {
   drawPanels();
   const bool moving = view_.navigate();
   if (document_) {
-    const Editor& editor = document_->editor;
-    const HairMesh& shown = attempt_ ? *attempt_ : editor.mesh();
-    {
+    const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");
-      view_.update(shown, attempt_ ? meshHash(shown) : editor.revision(), editor.state(),
-                   document_->head.get());
-    }
-    takeKeys();
-    takeTools();
+      const HairMesh& shown = attempt_ ? *attempt_ : document_->editor.mesh();
+      view_.update(shown, hashCombine(document_->editor.revision(), attempt_ ? attemptNumber_ : 0),
+                   document_->editor.state(), document_->head.get());
+    };
+    project();
+    if (!takeTools()) takeKeys();
     if (document_) {  // a key may have opened another
-      const HairMesh& now = attempt_ ? *attempt_ : document_->editor.mesh();
-      view_.update(now, attempt_ ? meshHash(now) : document_->editor.revision(), document_->editor.state(),
-                   document_->head.get());
+      project();
       view_.drawPicture(window_.canvas().texture());
-      EditState state = document_->editor.state();
-      if (attempt_) state.selection = keepValid(now, state.selection);
-      const Trace::Span draw(trace_, "draw mesh");
-      view_.drawMesh(now, state);
-      select_.draw(view_);
+      drawOverView();
     }
   } else {
     takeKeys();
   }
-  askForPicture(moving || tool_.has_value());
+  askForPicture(moving || tool_ != nullptr || brush_.stroking());
   drawPalette();
+  drawSelectDialog();
   drawPathDialog();
   drawRecoveryDialog();
   drawCloseDialog();

@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "actions.h"
+#include "brush_tool.h"
 #include "document.h"
+#include "modal_tool.h"
 #include "picture_worker.h"
+#include "select_tool.h"
 #include "settings.h"
-#include "tools.h"
 #include "trace.h"
 #include "viewport.h"
 #include "window.h"
@@ -23,6 +26,9 @@ struct StudioOptions {
   std::filesystem::path pythonLog;  ///< each command that is done, as a line of Python
 };
 
+/// Seconds of a clock that only goes forward.
+double secondsNow();
+
 class Studio {
  public:
   Studio(Window& window, StudioOptions options);
@@ -33,6 +39,8 @@ class Studio {
   /// Asks to save first where something changed; true when the window may close now.
   bool mayClose();
   Status finish() const { return trace_.write(); }
+  /// Every command and action with menu and key, as JSON.
+  std::string commandList() const;
 
  private:
   // Commands and files.
@@ -43,19 +51,48 @@ class Studio {
   void exportTo(const std::filesystem::path& path);
   void say(std::string message, bool problem = false);
 
+  // Tools (interaction.cpp).
+  /// Starts a command as a key or menu does: with its tool where it has one, else at once.
+  void begin(const std::string& command);
+  CommandArguments argumentsFor(const CommandInfo& info) const;
+  /// What the command would do becomes the mesh that is shown.
+  void show(const std::string& command, const CommandArguments& arguments);
+  void forgetAttempt();
+  void followTool();
+  void followBrush();
+  bool takeTools();  ///< true: this frame's keys were the tool's
+  std::optional<Vec3> selectionMiddle() const;
+  void drawOverView();
+  void drawNote();
+
+  // Menus, palette and keys (actions.cpp, view_actions.cpp, menus.cpp).
+  std::vector<Action> makeActions();
+  std::vector<Action> fileActions();
+  std::vector<Action> selectActions();
+  std::vector<Action> toolActions();
+  std::vector<Action> viewActions();
+  std::vector<Action> helpActions();
+  std::vector<MenuEntry> entries() const;
+  std::string keyOf(const std::string& name) const;
+  std::string refusalOf(const MenuEntry& entry) const;
+  void carryOut(const MenuEntry& entry);
+  void drawEntry(const MenuEntry& entry);
+
   // A frame's parts.
   void takeKeys();
-  void takeTools();
   void takePictures();
   void askForPicture(bool moving);
   void autosave();
 
   // What is drawn (menus.cpp, panels.cpp, dialogs.cpp).
   void drawMenus();
-  void drawFileMenu();
-  void drawViewMenu();
+  void drawRecentMenu();
   void drawPanels();
-  void drawToolPanel();
+  void drawToolPanel();  // tool_panel.cpp, with the next four
+  void takeUp(HandTool hand, const std::string& brush);
+  void drawHandTools();
+  void drawHandSettings();
+  void drawSelectionPanel();
   void drawStrandPanel();
   void drawLookPanel();
   void drawAdjustPanel();
@@ -64,6 +101,9 @@ class Studio {
   void drawPythonPanel();
   void drawStatusLine();
   void drawPalette();
+  void drawSelectDialog();  // select_dialog.cpp
+  /// False, and says why, for what is no list of ids.
+  bool selectById(const std::string& text);
   void drawPathDialog();
   void drawRecoveryDialog();
   void drawCloseDialog();
@@ -77,6 +117,7 @@ class Studio {
   Window& window_;
   StudioOptions options_;
   Settings settings_;
+  std::vector<Action> actions_;
   Trace trace_;
   std::unique_ptr<Document> document_;
   std::future<Result<std::unique_ptr<Document>>> opening_;
@@ -84,9 +125,14 @@ class Studio {
   std::unique_ptr<PictureWorker> pictures_;
   Viewport view_;
   SelectTool select_;
-  std::optional<ModalTool> tool_;
+  BrushTool brush_;
+  ToolSettings tools_;
+  std::unique_ptr<ModalTool> tool_;
   std::optional<HairMesh> attempt_;  // what the tool would leave
-  double softRadius_ = 0;
+  std::uint64_t attemptNumber_ = 0;
+  std::string attemptLine_, refusal_;  // of the tool that runs
+  std::string note_;                   // why something was refused, beside the mouse
+  double noteUntil_ = 0;
 
   std::string message_;
   bool messageIsProblem_ = false;
@@ -104,6 +150,8 @@ class Studio {
   std::string pathText_;
   bool paletteOpen_ = false, closeAsked_ = false, quit_ = false, tourOpen_ = false;
   std::string paletteText_;
+  bool idsAsked_ = false;
+  std::string idsText_;
   std::vector<std::filesystem::path> leftBehind_;
 };
 

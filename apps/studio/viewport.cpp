@@ -4,22 +4,21 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "coif/base/random.h"
 
 namespace coif::studio {
 namespace {
 
-constexpr ImU32 kSelected = IM_COL32(255, 170, 40, 255), kHover = IM_COL32(255, 235, 150, 255),
-                kVertex = IM_COL32(20, 20, 24, 255), kPinned = IM_COL32(90, 200, 255, 255),
-                kFrozen = IM_COL32(120, 120, 140, 255);
+constexpr double kLeastFramed = 0.04;  // half a framed box, of the whole mesh
 
-/// One colour a layer, from the root's green to the tips' violet.
-ImU32 layerColor(std::uint32_t layer, float alpha) {
-  float r, g, b;
-  ImGui::ColorConvertHSVtoRGB(std::fmod(0.36f + 0.11f * float(layer), 1.0f), 0.45f, 0.95f, r, g, b);
-  return ImGui::ColorConvertFloat4ToU32({r, g, b, alpha});
+/// Whether the two can share what is known of picking: all but where vertices are.
+bool sameTopology(const HairMesh& a, const HairMesh& b) {
+  const auto alike = [](const HairVertex& v, const HairVertex& w) {
+    return v.id == w.id && v.parent == w.parent && v.pinned == w.pinned;
+  };
+  return std::ranges::equal(a.bundles(), b.bundles()) && std::ranges::equal(a.splits(), b.splits()) &&
+         std::ranges::equal(a.vertices(), b.vertices(), alike);
 }
 
 }  // namespace
@@ -33,18 +32,25 @@ void Viewport::place(const ImVec2& origin, const ImVec2& size) {
 
 void Viewport::update(const HairMesh& mesh, std::uint64_t revision, const EditState& state,
                       const Surface* head) {
-  std::uint64_t key =
-      hashCombine(revision, std::uint64_t(settings.showInternal) + 2 * std::uint64_t(settings.mesh));
-  for (const Vec3& v : {camera.eye, camera.target, Vec3(camera.fovDeg, size_.x, size_.y)}) {
-    for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
+  std::uint64_t lens = 0;
+  for (const Vec3& v : {camera.eye, camera.target, camera.up, Vec3(camera.fovDeg, size_.x, size_.y)}) {
+    for (double x : v) lens = hashCombine(lens, std::bit_cast<std::uint64_t>(x));
   }
+  const Surface* occluder = settings.mesh == MeshStyle::XRay || !settings.showHead ? nullptr : head;
+  lens = hashCombine(lens, occluder != nullptr ? 1 : 0);
+  const std::uint64_t key = hashCombine(hashCombine(revision, lens), std::uint64_t(settings.showInternal));
   if (screen_ && key == shownKey_) return;
   shownKey_ = key;
-  PickOptions options;
-  options.hidden = state.hidden;
-  options.internal = settings.showInternal;
-  options.occluder = settings.mesh == MeshStyle::XRay ? nullptr : head;
-  screen_ = std::make_unique<ScreenMesh>(mesh, camera, width(), height(), options);
+  const bool known = parts_ && partsInternal_ == settings.showInternal && partsHidden_ == state.hidden &&
+                     sameTopology(mesh, partsMesh_);
+  if (!known) {
+    parts_ = std::make_shared<PickParts>(pickParts(mesh, state.hidden, settings.showInternal));
+    partsMesh_ = mesh, partsHidden_ = state.hidden, partsInternal_ = settings.showInternal;
+  }
+  const bool sameView = known && screen_ && lens == lens_;
+  lens_ = lens;
+  screen_ = std::make_unique<ScreenMesh>(mesh, parts_, camera, width(), height(), occluder,
+                                         sameView ? screen_.get() : nullptr);
 }
 
 Vec2 Viewport::mouse() const {
@@ -67,6 +73,19 @@ double Viewport::unitsPerPixel(const Vec3& at) const {
   return 2 * depth * std::tan(0.5 * camera.fovDeg * std::numbers::pi / 180) / height();
 }
 
+Vec3 Viewport::ray(const Vec2& px) const {
+  const double unit = 2 * std::tan(0.5 * camera.fovDeg * std::numbers::pi / 180) / height();
+  return forward() + unit * ((px.x() - 0.5 * width()) * right() + (0.5 * height() - px.y()) * up());
+}
+
+ScreenPoint Viewport::project(const Vec3& world) const {
+  const Vec3 d = world - camera.eye;
+  const double depth = d.dot(forward());
+  const double scale =
+      0.5 * height() / std::tan(0.5 * camera.fovDeg * std::numbers::pi / 180) / std::max(depth, 1e-300);
+  return {Vec2(0.5 * width() + scale * d.dot(right()), 0.5 * height() - scale * d.dot(up())), depth};
+}
+
 bool Viewport::navigate() {
   const ImGuiIO& io = ImGui::GetIO();
   const Camera before = camera;
@@ -86,106 +105,34 @@ bool Viewport::navigate() {
 void Viewport::frame(const HairMesh& mesh, const Selection& selection) {
   std::vector<Vec3> points;
   for (std::uint32_t v : selectedVertices(mesh, selection)) points.push_back(mesh.position(v));
-  if (points.empty()) {
-    for (const HairVertex& vertex : mesh.vertices()) points.push_back(vertex.position);
-  }
+  std::vector<Vec3> all;
+  for (const HairVertex& vertex : mesh.vertices()) all.push_back(vertex.position);
+  if (points.empty()) points = all;
   if (points.empty()) return;
+  Box box = bounds(points);
+  // A vertex alone has no size: its surroundings are framed.
+  const Vec3 least = Vec3::Constant(kLeastFramed * (bounds(all).hi - bounds(all).lo).norm());
+  const Vec3 middle = 0.5 * (box.lo + box.hi), half = (0.5 * (box.hi - box.lo)).cwiseMax(least);
+  box = {middle - half, middle + half};
   const double fov = camera.fovDeg;
-  const Camera framed = frameBox(bounds(points), upAxis, azimuthDegOf(camera, upAxis),
-                                 elevationDegOf(camera, upAxis), aspect());
+  const Camera framed =
+      frameBox(box, upAxis, azimuthDegOf(camera, upAxis), elevationDegOf(camera, upAxis), aspect());
   camera = withLens(framed, fov);
+}
+
+void Viewport::lookFrom(double azimuthDeg, double elevationDeg) {
+  camera = orbit(camera, upAxis, azimuthDeg - azimuthDegOf(camera, upAxis),
+                 elevationDeg - elevationDegOf(camera, upAxis));
+}
+
+void Viewport::setParallel(bool on) {
+  if (on != parallel()) camera = withLens(camera, on ? kParallelFovDeg : 30);
 }
 
 void Viewport::drawPicture(std::uint32_t texture) const {
   if (texture == 0) return;
   ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(std::uintptr_t(texture)), origin_,
                                            {origin_.x + size_.x, origin_.y + size_.y});
-}
-
-void Viewport::drawMesh(const HairMesh& mesh, const EditState& state) const {
-  if (settings.mesh == MeshStyle::Hidden || !screen_) return;
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.PushClipRect(origin_, {origin_.x + size_.x, origin_.y + size_.y});
-  drawFaces(list, mesh, state);
-  drawEdges(list, mesh, state);
-  if (settings.kind == SelectKind::Vertex) drawVertices(list, mesh, state);
-  drawHover(list, mesh);
-  list.PopClipRect();
-}
-
-void Viewport::drawFaces(ImDrawList& list, const HairMesh& mesh, const EditState& state) const {
-  for (const FaceRef& face : state.selection.faces) {
-    const auto corners = mesh.bundles()[mesh.indexOf(face.bundle)].face(face.layer);
-    std::vector<ImVec2> outline;
-    bool seen = true;
-    for (std::uint32_t v : corners) {
-      outline.push_back(toWindow(screen_->vertices()[v].px));
-      seen = seen && screen_->pickable(v);
-    }
-    if (seen) list.AddConvexPolyFilled(outline.data(), int(outline.size()), IM_COL32(255, 170, 40, 90));
-  }
-}
-
-void Viewport::drawEdges(ImDrawList& list, const HairMesh& mesh, const EditState& state) const {
-  const auto vertices = mesh.vertices();
-  const auto line = [&](std::uint32_t a, std::uint32_t b, ImU32 color, float width) {
-    if (!screen_->pickable(a) || !screen_->pickable(b)) return;
-    list.AddLine(toWindow(screen_->vertices()[a].px), toWindow(screen_->vertices()[b].px), color, width);
-  };
-  std::set<std::pair<std::uint32_t, std::uint32_t>> drawn;
-  for (const Bundle& bundle : mesh.bundles()) {
-    if (std::ranges::binary_search(state.hidden, bundle.id)) continue;
-    for (std::uint32_t layer = 0; layer <= bundle.height(); ++layer) {
-      if (!settings.showInternal && layer > 0 && layer < bundle.height()) continue;
-      const auto face = bundle.face(layer);
-      for (std::uint32_t i = 0; i < bundle.corners; ++i) {
-        const auto edge = std::minmax(face[i], face[(i + 1) % bundle.corners]);
-        if (drawn.insert(edge).second) line(edge.first, edge.second, layerColor(layer, 0.55f), 1.0f);
-      }
-    }
-  }
-  for (std::uint32_t v = 0; v < vertices.size(); ++v) {
-    if (vertices[v].parent != kNone) line(vertices[v].parent, v, layerColor(vertices[v].layer, 0.35f), 1.0f);
-  }
-  for (const EdgeRef& edge : state.selection.edges) {
-    const auto ends = selectedVertices(mesh, {{}, {edge}, {}});
-    line(ends[0], ends[1], kSelected, 2.5f);
-  }
-}
-
-void Viewport::drawVertices(ImDrawList& list, const HairMesh& mesh, const EditState& state) const {
-  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
-    if (!screen_->pickable(v)) continue;
-    const HairVertex& vertex = mesh.vertices()[v];
-    const bool selected = std::ranges::binary_search(state.selection.vertices, vertex.id);
-    const bool frozen = std::ranges::binary_search(state.frozen, vertex.id);
-    list.AddCircleFilled(toWindow(screen_->vertices()[v].px), selected ? 4.0f : 2.5f,
-                         selected        ? kSelected
-                         : frozen        ? kFrozen
-                         : vertex.pinned ? kPinned
-                                         : kVertex);
-  }
-}
-
-void Viewport::drawHover(ImDrawList& list, const HairMesh& mesh) const {
-  if (!hovered_ || ImGui::IsAnyMouseDown()) return;
-  if (settings.kind == SelectKind::Vertex) {
-    if (const auto id = screen_->vertexAt(mouse(), 12)) {
-      list.AddCircle(toWindow(screen_->vertices()[mesh.indexOf(*id)].px), 6, kHover, 0, 2);
-    }
-  } else if (settings.kind == SelectKind::Edge) {
-    if (const auto edge = screen_->edgeAt(mouse(), 8)) {
-      const auto ends = selectedVertices(mesh, {{}, {*edge}, {}});
-      list.AddLine(toWindow(screen_->vertices()[ends[0]].px), toWindow(screen_->vertices()[ends[1]].px),
-                   kHover, 3);
-    }
-  } else if (const auto face = screen_->faceAt(mouse())) {
-    std::vector<ImVec2> outline;
-    for (std::uint32_t v : mesh.bundles()[mesh.indexOf(face->bundle)].face(face->layer)) {
-      outline.push_back(toWindow(screen_->vertices()[v].px));
-    }
-    list.AddPolyline(outline.data(), int(outline.size()), kHover, ImDrawFlags_Closed, 2.5f);
-  }
 }
 
 }  // namespace coif::studio

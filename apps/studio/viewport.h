@@ -13,11 +13,15 @@
 
 namespace coif::studio {
 
-enum class MeshStyle { Hidden, Wire, XRay };
+enum class MeshStyle { Hidden, Wire, Shaded, XRay };
+enum class MeshColor { Layer, Bundle, Group };
+enum class HeadStyle { Shaded, Wire, XRay };
 enum class MouseHabit { Blender, Maya };
 
 struct ViewSettings {
   MeshStyle mesh = MeshStyle::Wire;
+  MeshColor color = MeshColor::Layer;
+  HeadStyle headStyle = HeadStyle::Shaded;
   bool showInternal = false, showHead = true, showStrands = true, grid = true;
   SelectKind kind = SelectKind::Vertex;
   MouseHabit habit = MouseHabit::Blender;
@@ -38,30 +42,37 @@ class Viewport {
   /// Box of everything, or of the selection when there is one.
   void frame(const HairMesh& mesh, const Selection& selection);
 
-  void drawPicture(std::uint32_t texture) const;
-  void drawMesh(const HairMesh& mesh, const EditState& state) const;
+  /// Turns the camera about its target to stand there; degrees.
+  void lookFrom(double azimuthDeg, double elevationDeg);
+  bool parallel() const { return camera.fovDeg < 1; }
+  void setParallel(bool on);
 
+  void drawPicture(std::uint32_t texture) const;
   bool hovered() const { return hovered_; }
   Vec2 mouse() const;  ///< in the view's own pixels
   const ScreenMesh* screen() const { return screen_.get(); }
   int width() const { return int(size_.x); }
   int height() const { return int(size_.y); }
   double aspect() const { return size_.y > 0 ? double(size_.x) / double(size_.y) : 1; }
+  const ImVec2& origin() const { return origin_; }
+  const ImVec2& size() const { return size_; }
   ImVec2 toWindow(const Vec2& px) const { return {origin_.x + float(px.x()), origin_.y + float(px.y())}; }
   /// Scene units a pixel, at the depth of a point.
   double unitsPerPixel(const Vec3& at) const;
+  /// From the eye through a pixel; its part along forward() is 1.
+  Vec3 ray(const Vec2& px) const;
+  ScreenPoint project(const Vec3& world) const;
   Vec3 right() const, up() const, forward() const;
 
  private:
-  void drawEdges(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
-  void drawVertices(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
-  void drawFaces(ImDrawList& list, const HairMesh& mesh, const EditState& state) const;
-  void drawHover(ImDrawList& list, const HairMesh& mesh) const;
-
   ImVec2 origin_{0, 0}, size_{1, 1};
   bool hovered_ = false;
   std::unique_ptr<ScreenMesh> screen_;
-  std::uint64_t shownKey_ = 0;
+  std::uint64_t shownKey_ = 0, lens_ = 0;
+  std::shared_ptr<const PickParts> parts_;  // of partsMesh_, with these hidden
+  HairMesh partsMesh_;
+  std::vector<BundleId> partsHidden_;
+  bool partsInternal_ = false;
 };
 
 }  // namespace coif::studio

@@ -44,6 +44,9 @@ Result<std::unique_ptr<Window>> Window::open(int width, int height, const std::s
     if (action == GLFW_RELEASE) return;
     static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.down(key, modifiers & kShown);
   });
+  glfwSetCharCallback(self->window_, [](GLFWwindow* window, unsigned codepoint) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.character(codepoint);
+  });
 
   ImGui::CreateContext();
   self->layoutFile_ = layoutFile;

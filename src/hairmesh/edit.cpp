@@ -126,24 +126,6 @@ Result<std::vector<std::uint32_t>> quadStrip(const HairMesh& mesh, EdgeRef edge)
   return strip;
 }
 
-Result<VertexWeights> softSelection(const HairMesh& mesh, std::span<const std::uint32_t> selection,
-                                    double radius) {
-  if (!(radius >= 0) || !std::isfinite(radius))
-    return refuse("the radius is negative or not finite", "radius");
-  VertexWeights weights(mesh.vertices().size(), 0);
-  for (const std::uint32_t v : selection) COIF_TRY(checkVertex(mesh, v));
-  for (std::uint32_t v = 0; radius > 0 && v < weights.size(); ++v) {
-    double nearest = radius;
-    for (const std::uint32_t s : selection) {
-      nearest = std::min(nearest, (mesh.position(v) - mesh.position(s)).norm());
-    }
-    const double s = 1 - nearest / radius;
-    weights[v] = s * s * (3 - 2 * s);
-  }
-  for (const std::uint32_t v : selection) weights[v] = 1;
-  return weights;
-}
-
 Status translate(HairMesh& mesh, const VertexWeights& weights, const Vec3& by) {
   return moveAll(mesh, weights, [&](const Vec3& p, double w) -> Vec3 { return p + w * by; });
 }

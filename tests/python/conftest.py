@@ -3,6 +3,7 @@
 import pathlib
 
 import pytest
+from studio_window import bob, display, studio  # noqa: F401  the studio's tests ask for them by name
 
 SHARED_DATA = pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"
 

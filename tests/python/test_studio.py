@@ -1,11 +1,6 @@
-"""coif-studio as a person drives it: a real window under Xvfb, real mouse and key events.
-
-What happened is read from the log of commands that the studio appends to (--python-log), from the files it saves, and
-from the pixels of the screen.
-"""
+"""coif-studio as a person drives it: files, keys, undo, recovery."""
 
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
@@ -13,126 +8,15 @@ import time
 
 import numpy as np
 import pytest
+from studio_window import BIN, PATIENCE, Studio, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 
-BIN = pathlib.Path(os.environ.get("COIF_BIN_DIR", pathlib.Path(__file__).parents[2] / "build/release/bin"))
-PATIENCE = 60  # seconds: software OpenGL on a busy machine; nothing is judged by how long it takes
-
-pytestmark = pytest.mark.skipif(
-    not (BIN / "coif-studio").exists() or not shutil.which("Xvfb") or not shutil.which("xdotool"),
-    reason="needs coif-studio, Xvfb and xdotool",
-)
-
-
-@pytest.fixture(scope="module")
-def display():
-    read, write = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1000x700x24", "-nolisten", "tcp", "-noreset"],
-        pass_fds=[write], stderr=subprocess.DEVNULL,
-    )
-    os.close(write)
-    with os.fdopen(read) as numbers:
-        number = numbers.readline().strip()
-    yield f":{number}"
-    server.terminate()
-    server.wait()
-
-
-@pytest.fixture(scope="module")
-def bob(tmp_path_factory):
-    """A document with a small bob on the generated head."""
-    folder = tmp_path_factory.mktemp("bob")
-    run = lambda *a: subprocess.run([BIN / "coif", "-q", *a], cwd=folder, check=True)  # noqa: E731
-    run("example-head", "-o", "head.obj")
-    run("new", "--scalp", "head.obj", "--style", "bob", "--cage", "60", "-o", "bob.coif")
-    return folder / "bob.coif"
-
-
-class Studio:
-    def __init__(self, display, folder, *arguments, size="900x600"):
-        self.folder, self.log = folder, folder / "log.py"
-        self.environment = dict(os.environ, DISPLAY=display, XDG_STATE_HOME=str(folder / "state"))
-        self.log.touch()
-        self.process = subprocess.Popen(
-            [BIN / "coif-studio", *map(str, arguments), "--size", size, "--python-log", self.log],
-            env=self.environment, cwd=folder, stderr=subprocess.PIPE,
-        )
-        self.window = self.wait(lambda: self.tool("search", "--onlyvisible", "--name", "Coif Studio"), "a window")
-
-    def tool(self, *arguments):
-        done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, capture_output=True, text=True)
-        return done.stdout.strip()
-
-    def wait(self, test, what):
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
-            if self.process.poll() not in (None, 0):
-                raise AssertionError(f"the studio ended: {self.process.stderr.read().decode()}")
-            if result := test():
-                return result
-            time.sleep(0.05)
-        raise AssertionError(f"waited for {what}; the log is {self.lines()}")
-
-    def title(self):
-        return self.tool("getwindowname", self.window)
-
-    def lines(self):
-        return self.log.read_text().splitlines()
-
-    def opened(self, name):
-        self.wait(lambda: name in self.title(), f"{name} in the title")
-        return self
-
-    def key(self, *keys):
-        for key in keys:
-            self.tool("key", "--delay", "40", key)
-            time.sleep(0.15)  # a frame for each: a person does not press two in one
-
-    def type(self, text):
-        self.tool("type", "--delay", "25", text)
-
-    def did(self, command, key=None):
-        """Presses a key until the command stands in the log: the one that the key belongs to."""
-        before = len(self.lines())
-        if key:
-            self.key(key)
-        self.wait(lambda: any(command in line for line in self.lines()[before:]), command)
-
-    def point(self, x, y):
-        self.tool("mousemove", "--window", self.window, x, y)
-        time.sleep(0.15)
-
-    def drag(self, start, end, button=1):
-        self.point(*start)
-        self.tool("mousedown", button)
-        time.sleep(0.15)
-        for t in (0.3, 0.7, 1):
-            self.point(*(np.array(start) + t * (np.array(end) - start)).astype(int))
-        self.tool("mouseup", button)
-
-    def end(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.wait()
-
-
-@pytest.fixture
-def studio(display, bob, tmp_path):
-    document = tmp_path / "bob.coif"
-    shutil.copy(bob, document)
-    shutil.copy(bob.parent / "head.obj", tmp_path / "head.obj")
-    made = Studio(display, tmp_path, document).opened("bob.coif")
-    made.point(450, 300)
-    yield made
-    made.end()
+pytestmark = needs_window
 
 
 def saved(studio):
-    studio.key("ctrl+s")
-    studio.wait(lambda: not studio.title().startswith("*"), "the document to be saved")
-    return coif.Scene.load(studio.folder / "bob.coif").hair_mesh
+    return studio.saved()
 
 
 def test_the_head_and_the_hair_are_seen(studio):

@@ -157,6 +157,92 @@ TEST(Editor, SymmetryActsOnBothSides) {
   }
 }
 
+TEST(Editor, SymmetricOperationsActOnBothSides) {
+  Editor editor(gridScene(4, 2));
+  ASSERT_TRUE(editor.run("symmetry").ok());
+  const auto vertex = [&](double x, double y, std::uint32_t layer) {
+    for (const HairVertex& v : editor.mesh().vertices()) {
+      if (v.layer == layer && v.position.isApprox(Vec3(x, y, layer), 1e-9))
+        return double(std::uint32_t(v.id));
+    }
+    return -1.0;
+  };
+  const auto complete = [&] {
+    return findMirror(editor.mesh(), editor.state().mirrorPoint, Vec3::UnitX(), 1e-6).value().complete();
+  };
+  ASSERT_TRUE(editor.run("select", ids("vertices", {vertex(1, 2, 2)})).ok());
+  ASSERT_TRUE(editor.run("separate_vertices").ok());
+  EXPECT_TRUE(complete());
+  EXPECT_EQ(editor.state().selection.vertices.size(), 9u)
+      << "three a side, and one each where its edges end: at the middle and at both borders";
+  ASSERT_TRUE(editor.run("undo").ok());
+  ASSERT_TRUE(editor.run("select", ids("vertices", {vertex(0, 0, 0), vertex(1, 1, 0)})).ok());
+  ASSERT_TRUE(editor.run("divide_face").ok());
+  EXPECT_TRUE(complete());
+  EXPECT_EQ(editor.mesh().bundles().size(), 18u);
+  ASSERT_TRUE(editor.run("undo").ok());
+  const std::size_t before = editor.mesh().vertices().size();
+  ASSERT_TRUE(editor.run("select", ids("edges", {1, 1, 1})).ok());
+  ASSERT_TRUE(editor.run("separate_edges").ok());
+  ASSERT_TRUE(editor.run("select", ids("edges", {1, 2, 1, 2, 2, 3})).ok());
+  ASSERT_TRUE(editor.run("weld_edges").ok()) << "on the plane: its own partner, joined once";
+  EXPECT_EQ(editor.mesh().vertices().size(), before);
+  ASSERT_TRUE(editor.run("select", ids("faces", {0, 2})).ok());
+  EXPECT_FALSE(editor.run("extrude", {{"curve", std::vector<double>{0, 0, 0, 1, 0, 0}}}).ok());
+  ASSERT_TRUE(editor.run("extrude", {{"layers", 3.0}, {"bend", 0.5}}).ok());
+  EXPECT_TRUE(complete());
+}
+
+TEST(Editor, ABrushStrokeIsOneStepAndPlaysBack) {
+  Editor editor(gridScene(4, 3));
+  const auto before = editor.canonicalState();
+  const CommandArguments stroke{{"kind", std::string("comb")},
+                                {"path", std::vector<double>{0, 2, 3, 2, 2, 3, 4, 2, 3}},
+                                {"radius", 1.5}};
+  ASSERT_TRUE(editor.run("brush", stroke).ok());
+  EXPECT_EQ(editor.undoCount(), 1u);
+  EXPECT_EQ(editor.pythonLog(),
+            "editor.brush(kind=\"comb\", path=[0, 2, 3, 2, 2, 3, 4, 2, 3], radius=1.5)\n");
+  ASSERT_TRUE(editor.run("undo").ok());
+  EXPECT_EQ(editor.canonicalState(), before);
+  // Only the selection, and nothing frozen.
+  ASSERT_TRUE(editor.run("select_layer", {{"layer", 3.0}}).ok());
+  ASSERT_TRUE(editor.run("freeze").ok());
+  CommandArguments selected = stroke;
+  selected["selected"] = true;
+  ASSERT_TRUE(editor.run("brush", selected).ok());
+  EXPECT_EQ(editor.undoCount(), 2u) << "all that is selected is frozen: nothing moved";
+}
+
+TEST(Editor, SnapsToTheGridTheScalpAndTheNextVertex) {
+  Editor editor(gridScene(2, 1));
+  const double id = double(std::uint32_t(editor.mesh().vertices().back().id));
+  ASSERT_TRUE(editor.run("select", ids("vertices", {id})).ok());
+  ASSERT_TRUE(editor.run("translate", {{"by", Vec3(0.13, -0.07, 0.26)}}).ok());
+  EXPECT_FALSE(editor.run("snap", {{"to", std::string("scalp")}}).ok()) << "no head";
+  ASSERT_TRUE(editor.run("snap", {{"step", 0.25}}).ok());
+  EXPECT_TRUE(editor.mesh().vertices().back().position.isApprox(Vec3(2.25, 2, 1.25), 1e-12));
+  ASSERT_TRUE(editor.run("snap", {{"to", std::string("vertex")}}).ok());
+  EXPECT_EQ(editor.mesh().vertices().back().position, Vec3(2, 1, 1)) << "the nearest that is not selected";
+  PolygonMesh floor;
+  floor.positions = {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}};
+  floor.addFace(std::vector<std::uint32_t>{0, 1, 2, 3});
+  const Surface head(floor);
+  editor.setHead(&head);
+  ASSERT_TRUE(editor.run("snap", {{"to", std::string("scalp")}}).ok());
+  EXPECT_TRUE(editor.mesh().vertices().back().position.isApprox(Vec3(2, 1, -1), 1e-12));
+}
+
+TEST(Selection, WholeBundlesLayersAndGroups) {
+  HairMesh mesh = gridScene(3, 2).hairMesh;
+  mesh.setGroup(0, mesh.addGroup("fringe")), mesh.setGroup(8, 1);
+  const Selection one{{}, {}, {{BundleId(0), 2}}};
+  EXPECT_EQ(widened(mesh, one, SelectKind::Face), one);
+  EXPECT_EQ(widened(mesh, one, SelectKind::Bundle).faces.size(), 3u);
+  EXPECT_EQ(widened(mesh, one, SelectKind::Layer).faces.size(), 9u);
+  EXPECT_EQ(widened(mesh, one, SelectKind::Group).faces.size(), 6u);
+}
+
 TEST(Selection, LoopsAndRingsOfAGrid) {
   const HairMesh mesh = gridScene(4, 1).hairMesh;
   // Bundle 5 is the quad at (1, 1); side 0 is its lower edge from (1, 1) to (2, 1).
@@ -192,6 +278,14 @@ TEST(Commands, HaveUniqueNamesKeysAndHelp) {
   EXPECT_GE(names.size(), 40u);
 }
 
+TEST(Commands, WithoutAKeyHaveAnotherWayIn) {
+  // Lists that the mouse fills in, and settings that a panel shows.
+  const std::set<std::string> keyless{"select", "displace", "brush", "set_strands", "set_look"};
+  for (const CommandInfo& info : commandInfos()) {
+    EXPECT_EQ(info.key.empty(), keyless.contains(info.name)) << info.name;
+  }
+}
+
 TEST(Commands, PythonLinesReadBackAsTheSameNumbers) {
   EXPECT_EQ(pythonLine("extrude", {{"distance", 0.1}}), "editor.extrude(distance=0.1)");
   EXPECT_EQ(pythonLine("translate", {{"by", Vec3(1, 0.5, -2)}, {"radius", 1.0 / 3}}),
@@ -218,6 +312,12 @@ CommandArguments randomArguments(const CommandInfo& info, const HairMesh& mesh, 
       out[argument.name] = Vec3(u - 0.5, v - 0.5, w + 0.1);
     } else if (argument.kind == ArgumentKind::Integer && argument.name == "layer") {
       out[argument.name] = double(random.below(draw++, 4));
+    } else if (argument.name == "layers") {
+      out[argument.name] = double(1 + random.below(draw++, 2));
+    } else if (argument.name == "path" || (argument.name == "curve" && u < 0.2)) {
+      std::vector<double> line;
+      for (int i = 0; i < 9; ++i) line.push_back(3 * random.uniform(draw++));
+      out[argument.name] = line;
     } else if (argument.kind == ArgumentKind::Numbers && info.name == "select") {
       const Bundle& bundle = mesh.bundles()[random.below(draw++, std::uint32_t(mesh.bundles().size()))];
       const double id = double(std::uint32_t(bundle.id)), layer = u < 0.6 ? bundle.height() : 0;

@@ -30,10 +30,33 @@ Result<std::vector<std::uint32_t>> connectedBundles(const HairMesh& mesh, Bundle
 /// quad, the border, or the start again. Bundles by index, in strip order.
 Result<std::vector<std::uint32_t>> quadStrip(const HairMesh& mesh, EdgeRef side);
 
-/// 1 on the selection, falling smoothly (3s² − 2s³) to 0 at `radius` from the nearest selected vertex; radius
-/// 0: the selection alone. Cost: selection × mesh.
+/// How a weight falls from 1 at the centre to 0 at the rim.
+enum class Falloff {
+  Smooth,    ///< 3s² − 2s³, s the part of the radius that is left
+  Linear,    ///< s
+  Sharp,     ///< s²
+  Round,     ///< √(2s − s²), a half circle
+  Constant,  ///< 1 up to the rim
+};
+/// At `distance` from the centre over the radius, >= 0.
+double falloffAt(Falloff falloff, double distance);
+
+/// What a soft selection's distance is.
+enum class SoftDistance {
+  Space,    ///< as the crow flies
+  Surface,  ///< along edges, links to the parent and the diagonals of quads: over a plane grid of squares at
+            ///< most 8.3 % too long; what no edge connects is out of reach
+};
+
+/// 1 on the selection, falling to 0 at `radius` from the nearest selected vertex; radius 0: the selection
+/// alone. Cost: selection × mesh in space, n log n along the surface.
 Result<VertexWeights> softSelection(const HairMesh& mesh, std::span<const std::uint32_t> selection,
-                                    double radius = 0);
+                                    double radius = 0, Falloff falloff = Falloff::Smooth,
+                                    SoftDistance distance = SoftDistance::Space);
+
+/// Unit normals of the hair's outside by vertex index: area-weighted over exposed side quads, or over tip
+/// faces where a vertex has none; zero for vertices inside.
+std::vector<Vec3> hullNormals(const HairMesh& mesh);
 
 // Moves. A vertex of weight w goes the fraction w of the way.
 Status translate(HairMesh& mesh, const VertexWeights& weights, const Vec3& by);

@@ -42,6 +42,24 @@ Result<Created> extrudeFaces(HairMesh& mesh, std::span<const BundleId> bundles,
 Result<Created> extrudeFaces(HairMesh& mesh, std::span<const FaceRef> tips,
                              const ExtrudeOptions& options = {});
 
+/// How several layers follow each other from the tips.
+struct ExtrudePath {
+  std::uint32_t layers = 1;  ///< >= 1
+  double length = 0;         ///< of the whole, scene units; with a curve: its own
+  /// Each layer turns by the part `bend` (0 … 1) from the last one's direction towards this one, of any
+  /// length: gravity. The first direction is the hair's own, on the root layer the normal.
+  Vec3 towards = Vec3::Zero();
+  double bend = 0;
+  /// Instead: the tips are carried along this line as a whole and turned with it, without twist. It may begin
+  /// anywhere.
+  std::vector<Vec3> curve = {};
+};
+
+/// extrudeFaces() layer by layer along a path. Returns the last faces, in the order given, and all new
+/// vertices. Errors: those of extrudeFaces; InvalidArgument for no layer, a bend outside 0 … 1, a curve of no
+/// length.
+Result<Created> extrudeAlong(HairMesh& mesh, std::span<const BundleId> bundles, const ExtrudePath& path);
+
 /// Removes the tip face and last prism of each bundle; a bundle of height 0 goes with its root face. Where
 /// the remaining faces of a vertex only touch there it is split, on the root layer always, above unless a
 /// weld holds it. Returns the vertices that splitting made.

@@ -1,6 +1,8 @@
 // What of a hair mesh lies under the mouse, in a box or in a lasso.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,12 +25,33 @@ struct PickOptions {
   const Surface* occluder = nullptr;      ///< the head: what is behind it cannot be picked; null: x-ray
 };
 
+/// A face of the hair's outside, as it is seen: a tip, or the exposed side of a bundle between two layers.
+struct HullFace {
+  FaceRef face;                            ///< of a side: the face that ends it
+  std::array<std::uint32_t, 4> corners{};  ///< of a side, counter-clockwise from outside
+  bool side = false;                       ///< false: the tip face itself
+};
+
+/// What of a hair mesh can be picked, which does not change while vertices move.
+struct PickParts {
+  std::vector<std::uint8_t> shown;  ///< by vertex
+  std::vector<EdgeRef> edges;       ///< canonical, both ends shown
+  std::vector<std::array<std::uint32_t, 2>> edgeEnds;
+  std::vector<FaceRef> faces;
+  std::vector<HullFace> hull;  ///< sides that a hidden neighbour leaves bare are part of it
+};
+PickParts pickParts(const HairMesh& mesh, std::span<const BundleId> hidden, bool internal);
+
 /// The hair mesh as a picture of it shows it. Keeps references to the mesh and the occluder. Cost: linear,
 /// and a ray through the occluder a vertex.
 class ScreenMesh {
  public:
   ScreenMesh(const HairMesh& mesh, const Camera& camera, int width, int height,
              const PickOptions& options = {});
+  /// The same with parts that are known; `before`, of the same parts and camera, spares the rays of the
+  /// vertices that did not move.
+  ScreenMesh(const HairMesh& mesh, std::shared_ptr<const PickParts> parts, const Camera& camera, int width,
+             int height, const Surface* occluder, const ScreenMesh* before = nullptr);
 
   /// Where each vertex is, by index.
   std::span<const ScreenPoint> vertices() const { return points_; }
@@ -39,11 +62,18 @@ class ScreenMesh {
   /// The nearest within `radiusPx`; of those alike near (within a pixel) the one in front.
   std::optional<VertexId> vertexAt(const Vec2& px, double radiusPx) const;
   std::optional<EdgeRef> edgeAt(const Vec2& px, double radiusPx) const;
-  /// The front one whose outline holds the pixel.
-  std::optional<FaceRef> faceAt(const Vec2& px) const;
+  /// The front one whose outline holds the pixel; `hull`: or the bundle's side that is seen there.
+  std::optional<FaceRef> faceAt(const Vec2& px, bool hull = false) const;
+  /// Where the ray through the pixel meets the hair's outside first.
+  std::optional<Vec3> hullAt(const Vec2& px) const;
+  /// Where the vertex that can be seen nearest to the pixel is; none when none is seen.
+  std::optional<Vec3> nearestSeen(const Vec2& px) const;
+  /// The same within `radiusPx`, not counting `except` (ascending).
+  std::optional<Vec3> vertexBeside(const Vec2& px, double radiusPx, std::span<const VertexId> except) const;
+  const PickParts& parts() const { return *parts_; }
 
   /// Elements of a kind inside a polygon (a lasso, or a box as four corners): vertices, edges with both ends,
-  /// faces with their middle.
+  /// faces with their middle. Bundles, layers and groups count by the faces of their outside.
   Selection inside(std::span<const Vec2> polygon, SelectKind kind) const;
   /// Elements of a kind within `radiusPx`: one dab of a selection brush.
   Selection near(const Vec2& px, double radiusPx, SelectKind kind) const;
@@ -51,16 +81,18 @@ class ScreenMesh {
  private:
   template <class Test>
   Selection pickWhere(SelectKind kind, const Test& test) const;
+  std::optional<HullFace> hullFaceAt(const Vec2& px) const;
+  std::span<const std::uint32_t> cornersOf(const HullFace& face) const;
 
   const HairMesh& mesh_;
   Camera camera_;
   int width_, height_;
   Vec3 right_, up_, forward_;
   double scale_ = 1;
+  std::shared_ptr<const PickParts> parts_;
+  std::vector<Vec3> positions_;
   std::vector<ScreenPoint> points_;
-  std::vector<std::uint8_t> pickable_;
-  std::vector<EdgeRef> edges_;
-  std::vector<FaceRef> faces_;
+  std::vector<std::uint8_t> pickable_, seen_;  // seen_: not behind the occluder
 };
 
 /// Even–odd rule.

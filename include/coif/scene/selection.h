@@ -21,7 +21,8 @@ struct Selection {
 };
 
 /// What an empty selection is filled with, and what "all" means.
-enum class SelectKind { Vertex, Edge, Face };
+/// Bundles, layers and groups are selected as faces.
+enum class SelectKind { Vertex, Edge, Face, Bundle, Layer, Group };
 
 /// The one name of an edge: of the bundles that share it on its layer, the one with the lower id.
 /// `edge` must exist.
@@ -49,6 +50,8 @@ Selection grown(const HairMesh& mesh, const Selection& selection);
 Selection shrunk(const HairMesh& mesh, const Selection& selection);
 /// Everything that edges connect to it on its layer.
 Selection linked(const HairMesh& mesh, const Selection& selection);
+/// Its faces' whole bundles, layers or groups, all their faces; as it is for the other kinds.
+Selection widened(const HairMesh& mesh, Selection selection, SelectKind kind);
 /// The same elements on every layer: vertices become columns, faces and edges bundles' stacks.
 Selection columns(const HairMesh& mesh, const Selection& selection);
 /// Edges that go on straight across quads' corners from a side (an edge loop), or side by side across

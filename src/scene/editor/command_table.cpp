@@ -34,7 +34,7 @@ const std::vector<Command>& commands() {
     std::vector<Command> list;
     list.push_back({{"undo", "Undo", "Edit", "Ctrl+Z", "Takes the last step back."}, {}});
     list.push_back({{"redo", "Redo", "Edit", "Ctrl+Shift+Z", "Does the step taken back again."}, {}});
-    for (auto part : {selectCommands, meshCommands, moveCommands, settingCommands}) {
+    for (auto part : {selectCommands, meshCommands, moveCommands, brushCommands, settingCommands}) {
       for (Command& command : part()) list.push_back(std::move(command));
     }
     return list;
@@ -87,6 +87,14 @@ Result<Arguments> complete(const Command& command, const CommandArguments& given
     values[name] = value;
   }
   return Arguments(std::move(values));
+}
+
+Result<std::vector<Vec3>> pointsOf(const std::vector<double>& numbers, const char* what) {
+  if (numbers.size() % 3 != 0) return refuse(std::string(what) + " must hold three numbers a point");
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < numbers.size(); i += 3)
+    points.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return points;
 }
 
 }  // namespace editor

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coif/base/context.h"
+#include "coif/hairmesh/edit.h"
 #include "coif/hairmesh/operations.h"
 #include "coif/scene/editor.h"
 
@@ -36,6 +37,8 @@ struct Work {
   EditState state;
   const Surface* head = nullptr;
   const Context& context;
+  double metersPerUnit = 0.01;
+  UpAxis upAxis = UpAxis::Y;
 
   Selection& selection() { return state.selection; }
   /// The mirror plane's partners while symmetric editing is on; null otherwise.
@@ -43,6 +46,8 @@ struct Work {
   /// Moves vertices by displacements (one a vertex): frozen ones stay, partners follow when symmetric,
   /// internal vertices among `asked` are pinned, since placement would take them back.
   Status displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked);
+  /// The same for all vertices at once: what `moved` did to a copy of the mesh.
+  Status adoptMoves(const HairMesh& moved, std::span<const std::uint32_t> asked);
 };
 
 struct Command {
@@ -54,6 +59,7 @@ struct Command {
 std::vector<Command> selectCommands();
 std::vector<Command> meshCommands();
 std::vector<Command> moveCommands();
+std::vector<Command> brushCommands();
 std::vector<Command> settingCommands();
 
 /// Undo and redo, then all of the above; undo and redo have no `run`.
@@ -62,9 +68,22 @@ const Command* find(std::string_view name);
 /// Fills in defaults. Errors: InvalidArgument naming command and argument.
 Result<Arguments> complete(const Command& command, const CommandArguments& given);
 
+/// Points from a list of numbers, three each. Errors: InvalidArgument naming `what`.
+Result<std::vector<Vec3>> pointsOf(const std::vector<double>& numbers, const char* what);
+
 inline Error refuse(std::string why) {
   return makeError(ErrorCode::InvalidArgument, std::move(why));
 }
+
+/// Moves those of `vertices` that are above the root layer and inside the head, or nearer to it than `margin`
+/// of its size, to that distance.
+void pushOut(HairMesh& mesh, const Surface& head, std::span<const std::uint32_t> vertices, double margin);
+/// The arguments of a soft selection, and its weights.
+std::vector<CommandArgument> softArguments();
+Result<VertexWeights> softWeights(const Work& work, std::span<const std::uint32_t> chosen,
+                                  const Arguments& arguments);
+Falloff falloffOf(const Arguments& arguments);
+CommandArgument falloffArgument();
 
 // Short forms for the tables.
 CommandArgument number(std::string name, double standard, double least, double most, std::string help);

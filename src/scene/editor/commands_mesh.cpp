@@ -1,11 +1,14 @@
 // The topological operations as commands on the selection.
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "scene/editor/command_table.h"
 
 namespace coif::editor {
 namespace {
+
+constexpr std::size_t kMostNewFaces = 1000000;
 
 void selectCreated(Work& work, const Created& created) {
   work.selection() = {};
@@ -39,8 +42,37 @@ Result<std::vector<BundleId>> tipsOf(const Work& work, const char* what) {
   return bundlesOf(work);
 }
 
+Vec3 upOf(const Work& work) {
+  return work.upAxis == UpAxis::Y ? Vec3::UnitY() : Vec3::UnitZ();
+}
+
+/// The path of a command that asks for more than one plain layer; empty otherwise.
+Result<std::optional<ExtrudePath>> pathOf(const Work& work, const Arguments& arguments) {
+  ExtrudePath path;
+  path.layers = std::uint32_t(arguments.number("layers"));
+  path.length = arguments.number("distance");
+  path.bend = arguments.number("bend");
+  path.towards = -upOf(work);
+  const Vec3& direction = arguments.vector("direction");
+  COIF_ASSIGN(path.curve, pointsOf(arguments.numbers("curve"), "curve"));
+  if (path.curve.empty() && !direction.isZero(0)) path.curve = {Vec3::Zero(), direction};
+  const bool plain = path.layers == 1 && path.bend == 0 && arguments.numbers("curve").empty();
+  return plain ? std::nullopt : std::optional(path);
+}
+
 Status extrude(Work& work, const Arguments& arguments) {
   COIF_ASSIGN(const auto tips, tipsOf(work, "extruded"));
+  COIF_ASSIGN(const auto path, pathOf(work, arguments));
+  if (path) {
+    if (path->layers * tips.size() > kMostNewFaces)
+      return refuse("that would make more than a million faces");
+    COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
+    if (mirror && !path->curve.empty())
+      return refuse("a curve is followed on one side only: turn symmetry off, and make symmetric afterwards");
+    COIF_ASSIGN(const Created created, extrudeAlong(work.mesh, tips, *path));
+    selectCreated(work, created);
+    return {};
+  }
   ExtrudeOptions options;
   options.distance = arguments.number("distance");
   if (!arguments.vector("direction").isZero(0)) options.direction = arguments.vector("direction");
@@ -113,9 +145,41 @@ Status onEdges(Work& work, const Operation& operation) {
   return {};
 }
 
+/// The vertices and, while symmetric, their partners, ascending.
+Result<std::vector<VertexId>> withPartners(const Work& work, std::vector<VertexId> ids) {
+  COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
+  for (std::size_t i = 0, count = ids.size(); mirror && i < count; ++i) {
+    const std::uint32_t partner = mirror->vertexPartner[work.mesh.indexOf(ids[i])];
+    if (partner != kNone) ids.push_back(work.mesh.vertices()[partner].id);
+  }
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+/// A pair of things and, while symmetric, the pair on the other side; once where that is the same pair.
+template <class T, class PartnerOf>
+Result<std::vector<std::pair<T, T>>> pairsOf(const Work& work, T a, T b, const PartnerOf& partnerOf) {
+  std::vector<std::pair<T, T>> pairs{{a, b}};
+  COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
+  if (!mirror) return pairs;
+  const std::optional<T> otherA = partnerOf(*mirror, a), otherB = partnerOf(*mirror, b);
+  if (otherA && otherB && std::minmax(*otherA, *otherB) != std::minmax(a, b))
+    pairs.push_back({*otherA, *otherB});
+  return pairs;
+}
+
+Result<std::vector<std::pair<VertexId, VertexId>>> vertexPairs(const Work& work, VertexId a, VertexId b) {
+  return pairsOf(work, a, b, [&](const Mirror& mirror, VertexId id) -> std::optional<VertexId> {
+    const std::uint32_t partner = mirror.vertexPartner[work.mesh.indexOf(id)];
+    if (partner == kNone) return std::nullopt;
+    return work.mesh.vertices()[partner].id;
+  });
+}
+
 Status separateVertices(Work& work, const Arguments&) {
-  const std::vector<VertexId> ids = work.selection().vertices;
-  if (ids.empty()) return refuse("select vertices first");
+  if (work.selection().vertices.empty()) return refuse("select vertices first");
+  COIF_ASSIGN(const auto ids, withPartners(work, work.selection().vertices));
   std::vector<VertexId> made;
   for (VertexId id : ids) {
     COIF_ASSIGN(const Created created, separateVertex(work.mesh, id));
@@ -130,44 +194,72 @@ WeldPosition weldPositionOf(const Arguments& arguments) {
   return arguments.text("where") == "first" ? WeldPosition::First : WeldPosition::Average;
 }
 
+/// Selects the vertices that welding kept.
+Status keepWelded(Work& work, const std::vector<VertexId>& kept) {
+  work.selection() = keepValid(work.mesh, {kept, {}, {}});
+  return {};
+}
+
 Status weldSelectedEdges(Work& work, const Arguments& arguments) {
   const std::vector<EdgeRef> edges = work.selection().edges;
   if (edges.size() != 2) return refuse("select the two edges to weld");
-  COIF_ASSIGN(const Created kept, weldEdges(work.mesh, edges[0], edges[1], weldPositionOf(arguments)));
-  work.selection() = {kept.vertices, {}, {}};
-  return {};
+  COIF_ASSIGN(const auto pairs, pairsOf(work, edges[0], edges[1],
+                                        [&](const Mirror& mirror, EdgeRef edge) -> std::optional<EdgeRef> {
+                                          const auto other = mirrored(work.mesh, mirror, edge);
+                                          return other.ok() ? std::optional(*other) : std::nullopt;
+                                        }));
+  std::vector<VertexId> all;
+  for (const auto& [a, b] : pairs) {
+    COIF_ASSIGN(const Created kept, weldEdges(work.mesh, a, b, weldPositionOf(arguments)));
+    all.insert(all.end(), kept.vertices.begin(), kept.vertices.end());
+  }
+  return keepWelded(work, all);
 }
 
 Status weldSelectedVertices(Work& work, const Arguments& arguments) {
   const std::vector<VertexId> ids = work.selection().vertices;
   if (ids.size() != 2) return refuse("select the two vertices to weld");
-  COIF_ASSIGN(const Created kept, weldVertices(work.mesh, ids[0], ids[1], weldPositionOf(arguments)));
-  work.selection() = {kept.vertices, {}, {}};
-  return {};
+  COIF_ASSIGN(const auto pairs, vertexPairs(work, ids[0], ids[1]));
+  std::vector<VertexId> all;
+  for (const auto& [a, b] : pairs) {
+    // What the first weld took along needs no second one.
+    if (work.mesh.indexOf(a) == kNone || work.mesh.indexOf(b) == kNone) continue;
+    COIF_ASSIGN(const Created kept, weldVertices(work.mesh, a, b, weldPositionOf(arguments)));
+    all.insert(all.end(), kept.vertices.begin(), kept.vertices.end());
+  }
+  return keepWelded(work, all);
 }
 
-Status divideSelectedFace(Work& work, const Arguments&) {
-  const std::vector<VertexId> ids = work.selection().vertices;
-  if (ids.size() != 2) return refuse("select two vertices of the face to divide");
-  const std::uint32_t a = work.mesh.indexOf(ids[0]), b = work.mesh.indexOf(ids[1]);
-  for (const Bundle& bundle : work.mesh.bundles()) {
+Result<Created> divideBetween(HairMesh& mesh, VertexId first, VertexId second) {
+  const std::uint32_t a = mesh.indexOf(first), b = mesh.indexOf(second);
+  for (const Bundle& bundle : mesh.bundles()) {
     for (std::uint32_t layer = 0; layer <= bundle.height(); ++layer) {
       const auto face = bundle.face(layer);
       const auto cornerA = std::ranges::find(face, a), cornerB = std::ranges::find(face, b);
       if (cornerA == face.end() || cornerB == face.end()) continue;
-      const BundleId id = bundle.id;
-      COIF_ASSIGN(const Created created, divideFace(work.mesh, id, std::uint32_t(cornerA - face.begin()),
-                                                    std::uint32_t(cornerB - face.begin())));
-      selectCreated(work, created);
-      return {};
+      return divideFace(mesh, bundle.id, std::uint32_t(cornerA - face.begin()),
+                        std::uint32_t(cornerB - face.begin()));
     }
   }
   return refuse("the two vertices have no face in common");
 }
 
-Status dissolveSelectedVertices(Work& work, const Arguments&) {
+Status divideSelectedFace(Work& work, const Arguments&) {
   const std::vector<VertexId> ids = work.selection().vertices;
-  if (ids.empty()) return refuse("select root vertices first");
+  if (ids.size() != 2) return refuse("select two vertices of the face to divide");
+  COIF_ASSIGN(const auto pairs, vertexPairs(work, ids[0], ids[1]));
+  Created all;
+  for (const auto& [a, b] : pairs) {
+    COIF_ASSIGN(const Created created, divideBetween(work.mesh, a, b));
+    all.bundles.insert(all.bundles.end(), created.bundles.begin(), created.bundles.end());
+  }
+  selectCreated(work, all);
+  return {};
+}
+
+Status dissolveSelectedVertices(Work& work, const Arguments&) {
+  if (work.selection().vertices.empty()) return refuse("select root vertices first");
+  COIF_ASSIGN(const auto ids, withPartners(work, work.selection().vertices));
   for (VertexId id : ids) {
     COIF_ASSIGN(const Created created, dissolveVertex(work.mesh, id));
     (void)created;
@@ -209,7 +301,10 @@ std::vector<Command> meshCommands() {
         "E",
         "A new layer on each selected tip.",
         {number("distance", 0.1, -1e6, 1e6, "Along the normal, scene units."),
-         vector("direction", Vec3::Zero(), "Instead, unless zero: the displacement, scene units.")}},
+         vector("direction", Vec3::Zero(), "Instead, unless zero: the displacement, scene units."),
+         integer("layers", 1, 1, 1000, "How many layers share the way."),
+         number("bend", 0, 0, 1, "By what part each layer turns down, as gravity does."),
+         numbers("curve", "Instead, unless empty: a line to follow, three numbers a point.")}},
        extrude},
       {{"delete", "Delete", "Mesh", "X", "Removes the selected tips."}, deleteTips},
       {{"insert_layer", "Insert layer", "Mesh", "I", "A layer before the selected faces' own.", {along}},

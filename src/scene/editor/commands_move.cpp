@@ -11,17 +11,13 @@ using Move = std::function<Status(HairMesh&, const VertexWeights&)>;
 
 /// Lets `move` act on a copy and takes its displacements over, so that freezing, symmetry and pinning are the
 /// same for all moves.
-Status moveBy(Work& work, double radius, const Move& move) {
+Status moveBy(Work& work, const Arguments& arguments, const Move& move) {
   const std::vector<std::uint32_t> chosen = selectedVertices(work.mesh, work.selection());
   if (chosen.empty()) return refuse("select something to move first");
-  COIF_ASSIGN(const VertexWeights weights, softSelection(work.mesh, chosen, radius));
+  COIF_ASSIGN(const VertexWeights weights, softWeights(work, chosen, arguments));
   HairMesh moved = work.mesh;
   COIF_TRY(move(moved, weights));
-  std::vector<Vec3> displacements(moved.vertices().size());
-  for (std::uint32_t v = 0; v < displacements.size(); ++v) {
-    displacements[v] = moved.position(v) - work.mesh.position(v);
-  }
-  return work.displace(std::move(displacements), chosen);
+  return work.adoptMoves(moved, chosen);
 }
 
 Vec3 middleOf(const Work& work) {
@@ -35,39 +31,21 @@ Vec3 pivotOf(const Work& work, const Arguments& arguments) {
   return arguments.flag("about_pivot") ? arguments.vector("pivot") : middleOf(work);
 }
 
-/// Away from the head: along the edge from the parent, or the mean normal of the root faces.
-std::vector<Vec3> outwards(const HairMesh& mesh) {
-  std::vector<Vec3> out(mesh.vertices().size(), Vec3::Zero());
-  for (const Bundle& bundle : mesh.bundles()) {
-    for (std::uint32_t layer = 0; layer <= bundle.height(); ++layer) {
-      const auto face = bundle.face(layer);
-      for (std::uint32_t i = 0; i < bundle.corners; ++i) {
-        const Vec3 &at = mesh.position(face[i]), &next = mesh.position(face[(i + 1) % bundle.corners]),
-                   &last = mesh.position(face[(i + bundle.corners - 1) % bundle.corners]);
-        out[face[i]] += (next - at).cross(last - at);
-      }
-    }
-  }
-  for (Vec3& normal : out) normal = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
-  return out;
-}
-
 Status inflate(Work& work, const Arguments& arguments) {
   const double by = arguments.number("distance");
-  return moveBy(work, arguments.number("radius"),
-                [by](HairMesh& mesh, const VertexWeights& weights) -> Status {
-                  const std::vector<Vec3> normals = outwards(mesh);
-                  for (std::uint32_t v = 0; v < normals.size(); ++v) {
-                    mesh.setPosition(v, mesh.position(v) + weights[v] * by * normals[v]);
-                  }
-                  return {};
-                });
+  return moveBy(work, arguments, [by](HairMesh& mesh, const VertexWeights& weights) -> Status {
+    const std::vector<Vec3> normals = hullNormals(mesh);
+    for (std::uint32_t v = 0; v < normals.size(); ++v) {
+      mesh.setPosition(v, mesh.position(v) + weights[v] * by * normals[v]);
+    }
+    return {};
+  });
 }
 
 /// Towards the straight line on along the column's first link, at the same distances from vertex to vertex.
 Status straighten(Work& work, const Arguments& arguments) {
   const double strength = arguments.number("strength");
-  return moveBy(work, 0, [strength](HairMesh& mesh, const VertexWeights& weights) -> Status {
+  return moveBy(work, arguments, [strength](HairMesh& mesh, const VertexWeights& weights) -> Status {
     const auto vertices = mesh.vertices();
     std::vector<Vec3> direction(vertices.size(), Vec3::Zero()), straight(vertices.size());
     std::vector<std::uint32_t> order(vertices.size());
@@ -94,21 +72,13 @@ Status straighten(Work& work, const Arguments& arguments) {
 
 Status pushOutOfHead(Work& work, const Arguments& arguments) {
   if (work.head == nullptr) return refuse("the head has not been read, so nothing can be pushed out of it");
-  const double margin = arguments.number("margin") * work.head->size();
   std::vector<std::uint32_t> chosen = selectedVertices(work.mesh, work.selection());
   if (chosen.empty()) {
     for (std::uint32_t v = 0; v < work.mesh.vertices().size(); ++v) chosen.push_back(v);
   }
-  std::vector<Vec3> displacements(work.mesh.vertices().size(), Vec3::Zero());
-  for (std::uint32_t v : chosen) {
-    if (work.mesh.vertices()[v].layer == 0) continue;
-    const Vec3& at = work.mesh.position(v);
-    const double distance = work.head->signedDistance(at);
-    if (distance >= margin) continue;
-    const SurfacePoint foot = work.head->nearest(at);
-    displacements[v] = foot.position + margin * foot.normal - at;
-  }
-  return work.displace(std::move(displacements), {});
+  HairMesh moved = work.mesh;
+  pushOut(moved, *work.head, chosen, arguments.number("margin"));
+  return work.adoptMoves(moved, {});
 }
 
 Status displaceGiven(Work& work, const Arguments& arguments) {
@@ -144,71 +114,87 @@ Status makeSymmetric(Work& work, const Arguments&) {
   return {};
 }
 
+/// A command's own arguments and those of a soft selection.
+std::vector<CommandArgument> soft(std::vector<CommandArgument> own) {
+  for (CommandArgument& argument : softArguments()) own.push_back(std::move(argument));
+  return own;
+}
+
 }  // namespace
 
+void pushOut(HairMesh& mesh, const Surface& head, std::span<const std::uint32_t> vertices, double margin) {
+  for (std::uint32_t v : vertices) {
+    if (mesh.vertices()[v].layer == 0) continue;
+    const Vec3 at = mesh.position(v);
+    if (head.signedDistance(at) >= margin * head.size()) continue;
+    const SurfacePoint foot = head.nearest(at);
+    mesh.setPosition(v, foot.position + margin * head.size() * foot.normal);
+  }
+}
+
+std::vector<CommandArgument> softArguments() {
+  return {number("radius", 0, 0, 1e12, "Of the soft selection, scene units; 0: none."), falloffArgument(),
+          choice("metric", {"space", "surface"}, "Its distance: through space, or along the mesh.")};
+}
+
+CommandArgument falloffArgument() {
+  return choice("falloff", {"smooth", "linear", "sharp", "round", "constant"}, "From the middle to the rim.");
+}
+
+Falloff falloffOf(const Arguments& arguments) {
+  const auto choices = falloffArgument().choices;
+  return Falloff(std::ranges::find(choices, arguments.text("falloff")) - choices.begin());
+}
+
+Result<VertexWeights> softWeights(const Work& work, std::span<const std::uint32_t> chosen,
+                                  const Arguments& arguments) {
+  return softSelection(work.mesh, chosen, arguments.number("radius"), falloffOf(arguments),
+                       arguments.text("metric") == "surface" ? SoftDistance::Surface : SoftDistance::Space);
+}
+
 std::vector<Command> moveCommands() {
-  const CommandArgument radius = number("radius", 0, 0, 1e12, "Of the soft selection, scene units; 0: none."),
-                        aboutPivot =
+  const CommandArgument aboutPivot =
                             flag("about_pivot", false, "About the pivot, not the selection's middle."),
                         pivot = vector("pivot", Vec3::Zero(), "A point, scene units."),
                         strength = number("strength", 0.5, 0, 1, "How far, from 0 to 1.");
   std::vector<Command> list = {
-      {{"translate",
-        "Move",
-        "Move",
-        "G",
-        "Moves the selection.",
-        {vector("by", Vec3::Zero(), "Scene units."), radius}},
+      {{"translate", "Move", "Move", "G", "Moves the selection.",
+        soft({vector("by", Vec3::Zero(), "Scene units.")})},
        [](Work& work, const Arguments& arguments) {
-         return moveBy(work, arguments.number("radius"), [&](HairMesh& mesh, const VertexWeights& weights) {
+         return moveBy(work, arguments, [&](HairMesh& mesh, const VertexWeights& weights) {
            return translate(mesh, weights, arguments.vector("by"));
          });
        }},
-      {{"rotate",
-        "Rotate",
-        "Move",
-        "R",
-        "Turns the selection.",
-        {vector("axis", Vec3::UnitY(), "Of any length but zero."),
-         number("angle", 0, -1e6, 1e6, "Degrees, right-handed."), aboutPivot, pivot, radius}},
+      {{"rotate", "Rotate", "Move", "R", "Turns the selection.",
+        soft({vector("axis", Vec3::UnitY(), "Of any length but zero."),
+              number("angle", 0, -1e6, 1e6, "Degrees, right-handed."), aboutPivot, pivot})},
        [](Work& work, const Arguments& arguments) {
          const Vec3 about = pivotOf(work, arguments);
-         return moveBy(work, arguments.number("radius"), [&](HairMesh& mesh, const VertexWeights& weights) {
+         return moveBy(work, arguments, [&](HairMesh& mesh, const VertexWeights& weights) {
            return rotate(mesh, weights, about, arguments.vector("axis"),
                          arguments.number("angle") * std::numbers::pi / 180);
          });
        }},
-      {{"scale",
-        "Scale",
-        "Move",
-        "S",
-        "Scales the selection.",
-        {vector("factors", Vec3::Ones(), "Along x, y and z."), aboutPivot, pivot, radius}},
+      {{"scale", "Scale", "Move", "S", "Scales the selection.",
+        soft({vector("factors", Vec3::Ones(), "Along x, y and z."), aboutPivot, pivot})},
        [](Work& work, const Arguments& arguments) {
          const Vec3 about = pivotOf(work, arguments);
-         return moveBy(work, arguments.number("radius"), [&](HairMesh& mesh, const VertexWeights& weights) {
+         return moveBy(work, arguments, [&](HairMesh& mesh, const VertexWeights& weights) {
            return scale(mesh, weights, about, arguments.vector("factors"));
          });
        }},
-      {{"smooth",
-        "Smooth",
-        "Move",
-        "Shift+R",
-        "Relaxes the selection within its layers.",
-        {strength, integer("steps", 1, 1, 1000, "How often."), radius}},
+      {{"smooth", "Smooth", "Move", "Shift+R", "Relaxes the selection within its layers.",
+        soft({strength, integer("steps", 1, 1, 1000, "How often.")})},
        [](Work& work, const Arguments& arguments) {
-         return moveBy(work, arguments.number("radius"), [&](HairMesh& mesh, const VertexWeights& weights) {
+         return moveBy(work, arguments, [&](HairMesh& mesh, const VertexWeights& weights) {
            return smooth(mesh, weights, arguments.number("strength"), int(arguments.number("steps")));
          });
        }},
-      {{"inflate",
-        "Inflate",
-        "Move",
-        "Alt+S",
-        "Moves the selection along the normals.",
-        {number("distance", 0.05, -1e6, 1e6, "Scene units."), radius}},
+      {{"inflate", "Inflate", "Move", "Alt+S", "Moves the selection along the normals.",
+        soft({number("distance", 0.05, -1e6, 1e6, "Scene units.")})},
        inflate},
-      {{"straighten", "Straighten", "Move", "Alt+T", "Lays columns along their first link.", {strength}},
+      {{"straighten", "Straighten", "Move", "Alt+T", "Lays columns along their first link.",
+        soft({strength})},
        straighten},
       {{"push_out",
         "Push out of the head",
@@ -226,7 +212,7 @@ std::vector<Command> moveCommands() {
        displaceGiven},
       {{"pin", "Pin", "Move", "Shift+P", "Keeps the selected vertices where they are put."}, pinning(true)},
       {{"unpin", "Unpin", "Move", "Alt+P", "Lets the selected inner vertices be placed."}, pinning(false)},
-      {{"symmetrise", "Make symmetric", "Move", "", "Copies the plane's far side over the near one."},
+      {{"symmetrise", "Make symmetric", "Move", "Alt+M", "Copies the plane's far side over the near one."},
        makeSymmetric},
   };
   for (Command& command : list) command.info.changesMesh = true;

@@ -6,13 +6,14 @@
 namespace coif::editor {
 namespace {
 
-SelectKind kindOf(const Arguments& arguments) {
-  const std::string& kind = arguments.text("kind");
-  return kind == "edge" ? SelectKind::Edge : kind == "face" ? SelectKind::Face : SelectKind::Vertex;
+CommandArgument kindArgument() {
+  return choice("kind", {"vertex", "edge", "face", "bundle", "layer", "group"},
+                "What to select; the last three as faces.");
 }
 
-CommandArgument kindArgument() {
-  return choice("kind", {"vertex", "edge", "face"}, "What to select.");
+SelectKind kindOf(const Arguments& arguments) {
+  const auto kinds = kindArgument().choices;
+  return SelectKind(std::ranges::find(kinds, arguments.text("kind")) - kinds.begin());
 }
 CommandArgument modeArgument() {
   return choice("mode", {"set", "add", "remove", "toggle"}, "How it joins what is selected already.");

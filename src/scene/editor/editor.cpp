@@ -41,7 +41,7 @@ Result<Editor::Outcome> Editor::outcomeOf(std::string_view name, const CommandAr
     return makeError(ErrorCode::NotFound, "there is no command '" + std::string(name) + "'");
   }
   COIF_ASSIGN(const editor::Arguments arguments, editor::complete(*command, given));
-  editor::Work work{scene_.hairMesh, state_, head_, context};
+  editor::Work work{scene_.hairMesh, state_, head_, context, scene_.metersPerUnit, scene_.upAxis};
   COIF_TRY(command->run(work, arguments));
   Outcome outcome{std::move(work.mesh), std::move(work.state), false};
   outcome.meshChanged = !(outcome.mesh == scene_.hairMesh);
@@ -182,6 +182,14 @@ Result<std::unique_ptr<Mirror>> Work::mirror() const {
   COIF_ASSIGN(Mirror found,
               findMirror(mesh, state.mirrorPoint, state.mirrorNormal, std::max(1e-3 * size, 1e-12)));
   return std::make_unique<Mirror>(std::move(found));
+}
+
+Status Work::adoptMoves(const HairMesh& moved, std::span<const std::uint32_t> asked) {
+  std::vector<Vec3> displacements(moved.vertices().size());
+  for (std::uint32_t v = 0; v < displacements.size(); ++v) {
+    displacements[v] = moved.position(v) - mesh.position(v);
+  }
+  return displace(std::move(displacements), asked);
 }
 
 Status Work::displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked) {

@@ -250,6 +250,27 @@ Selection linked(const HairMesh& mesh, const Selection& selection) {
   });
 }
 
+Selection widened(const HairMesh& mesh, Selection selection, SelectKind kind) {
+  if (kind < SelectKind::Bundle || selection.faces.empty()) return selection;
+  std::set<std::uint32_t> layers, groups;
+  std::set<BundleId> bundles;
+  for (const FaceRef& face : selection.faces) {
+    layers.insert(face.layer), bundles.insert(face.bundle);
+    groups.insert(mesh.bundles()[mesh.indexOf(face.bundle)].group);
+  }
+  selection.faces.clear();
+  for (const Bundle& bundle : mesh.bundles()) {
+    const bool whole = kind == SelectKind::Bundle
+                           ? bundles.contains(bundle.id)
+                           : kind == SelectKind::Group && groups.contains(bundle.group);
+    for (std::uint32_t layer = 0; layer <= bundle.height(); ++layer) {
+      if (whole || (kind == SelectKind::Layer && layers.contains(layer)))
+        selection.faces.push_back({bundle.id, layer});
+    }
+  }
+  return selection;
+}
+
 Selection columns(const HairMesh& mesh, const Selection& selection) {
   Selection out;
   std::vector<std::uint8_t> roots(mesh.vertices().size(), 0);
