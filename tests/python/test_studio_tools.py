@@ -20,14 +20,14 @@ def arguments(line):
     return {k.arg: ast.literal_eval(k.value) for k in call.keywords}
 
 
-def in_the_middle(studio):
-    """Selects a tip's corner, seen from the front, and brings it to the very middle of the view; its index."""
+def in_the_middle(studio, corners=1):
+    """Selects one or two of a tip's corners, seen from the front, and brings their middle to the view's; indices."""
     mesh = coif.Scene.load(studio.folder / "bob.coif").hair_mesh
-    corner = mesh.bundles[0].vertices[-1][0]
+    chosen = mesh.bundles[0].vertices[-1][: 2 * corners - 1 : 2]
     studio.key("KP_1")
-    studio.select(f"v {corner}")
+    studio.select("v " + " ".join(map(str, chosen)))
     studio.key("f")
-    return mesh.indices([corner])[0]
+    return mesh.indices(chosen)
 
 
 def test_the_gizmo_moves_along_its_axis(studio):
@@ -52,7 +52,7 @@ def test_the_gizmo_moves_in_a_plane(studio):
 
 
 def test_the_gizmo_turns_and_scales(studio):
-    in_the_middle(studio)
+    in_the_middle(studio, 2)
     studio.key("shift+3")
     c = studio.middle()
     radius = 1.15 * ARM  # the outer ring turns in the plane of the view
@@ -65,7 +65,7 @@ def test_the_gizmo_turns_and_scales(studio):
 
 
 def test_numbers_and_planes_are_exact(studio):
-    in_the_middle(studio)
+    in_the_middle(studio, 2)
     studio.key("g")
     studio.type("1")
     studio.key("Tab")
@@ -91,7 +91,7 @@ def test_control_snaps_to_the_grid(studio):
     with studio.held("ctrl"):
         studio.point(*(c + (37, -23)))
         by = np.array(arguments(studio.does(lambda: (studio.press(), studio.release()), "translate"))["by"])
-    to = before.positions[corner] + by
+    to = before.positions[corner[0]] + by
     assert np.allclose(to / 0.5, np.round(to / 0.5), atol=1e-6), "steps of half a unit"
 
 
