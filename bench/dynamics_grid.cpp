@@ -68,8 +68,8 @@ struct EnergyWatch {
       if (g.cases[t].defect == GridDefect::SpunRoot) continue;  // its root does work
       const double energy = energyOf(g, t);
       scale[t] = std::max(scale[t], std::abs(energy));
-      // What may come back: a Newton solve that stopped at its limit (measured at 2e-6 of what a folded chain
-      // of stiff joints starts with), and rounding of the heavy tip's weight.
+      // What may come back: rounding of what the heavy tip weighs and stiff joints hold (single precision:
+      // 1e-5).
       const double bound =
           scale[t] + 10 * (1 + g.cases[t].ratio * double(g.cases.size()) / double(g.chains.linkCount()));
       if (std::isfinite(lowest[t]) && !(energy <= lowest[t] + 1e-5 * bound)) rose[t] = 1;
@@ -136,12 +136,14 @@ GridTally& GridTally::operator+=(const GridTally& o) {
   return *this;
 }
 
-GridTally runGrid(DynamicsMethod method, std::size_t links, double timeStep, int steps, bool floatLanes) {
+GridTally runGrid(DynamicsMethod method, std::size_t links, double timeStep, int steps, bool floatLanes,
+                  int maxNewton) {
   DynamicsGrid g = dynamicsGrid(links);
   SolverOptions options;
   options.method = method;
   options.gravity = kGravity;
   options.floatLanes = floatLanes;
+  options.maxNewton = maxNewton;
   const auto solver = makeSolver(g.chains, options).value();
   GridForce bad(g, true);
   ForceField* fields[] = {&bad};

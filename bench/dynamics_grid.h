@@ -51,6 +51,6 @@ struct GridTally {
 
 /// `steps` steps of every case with one method. Spun roots turn by two radians a step and are thrown about.
 GridTally runGrid(DynamicsMethod method, std::size_t links, double timeStep, int steps,
-                  bool floatLanes = false);
+                  bool floatLanes = false, int maxNewton = 20);
 
 }  // namespace coif

@@ -11,6 +11,8 @@ extern const Kernels COIF_KERNELS;
 namespace {
 #include "simulate/lane_math.h"
 
+#include "simulate/newton_system.h"
+
 #include "simulate/direct_kernel.h"
 #include "simulate/projecting_kernel.h"
 }  // namespace

@@ -24,23 +24,31 @@ struct StepConstants {
 /// Does not change from step to step.
 template <class T, int L>
 struct alignas(64) NodeConstants {
-  T length[L], mass[L], kappa[L], drag[L];
-  T rest[3][L];  ///< the link's rest direction in the parent's frame
+  T length[L], perLength[L], mass[L], kappa[L], drag[L];  ///< perLength: its inverse
+  T rest[3][L];                                           ///< the link's rest direction in the parent's frame
 };
 
-/// One step's data and working space.
+/// One step's data and working space. Places are relative to where the root was at the step's start.
 template <class T, int L>
 struct alignas(64) NodeWork {
-  // In: the state before; `lateral` is Σ k (d_neighbour − rest). A prescribed root's x is where it goes.
-  T x0[3][L], v0[3][L], xp[3][L], vp[3][L], lateral[3][L];
-  // Out, and the iterate.
-  T x[3][L], v[3][L];
-  T u0[3][L], u[3][L], trial[3][L];
-  T y[3][L], w[L], r[L], kappa[L];
-  T xOld[3][L], force[3][L], forceOld[3][L], stiffness[6][L];  // stiffness: xx xy xz yy yz zz
-  T target[3][L], normal[3][L], binormal[3][L];                // of the joint; of the link's frame
-  T axis1[3][L], axis2[3][L];                                  // what the joint's two coordinates turn about
+  // In: the state before; back: from here to the step before; `lateral` is Σ k (d_neighbour − rest). A
+  // prescribed root's goal is in x.
+  double start[3][L];
+  T v0[3][L], back[3][L], vBack[3][L], lateral[3][L];
+  // Out; of the direct solver also how far it moved.
+  double end[3][L];
+  T v[3][L], move[3][L];
+  // Of the projecting solvers.
+  T x0[3][L], x[3][L];
+  // The link: u0 at the start; its iterate and the trial in turns, u = u0 + turned. y counts from the start.
+  T u0[3][L], u[2][3][L], turned[2][3][L];
+  T y[3][L], w[L], r[L], perR[L], kappa[L];
+  T moveOld[3][L], force[3][L], forceOld[3][L], stiffness[6][L];  // stiffness: xx xy xz yy yz zz
+  T target[3][L], normal[3][L], binormal[3][L];                   // of the joint; of the link's frame
+  T axis1[3][L], axis2[3][L];  // what the joint's two coordinates turn about
   T gainX1[3][L], gainX2[3][L], gainW1[3][L], gainW2[3][L], gain[2][L];
+  T anchorTurned[3][L],
+      anchorStep[3][L];     // where a lane that dared an uphill step can go back to, and its step
   T omega[3][L], dx[3][L];  // the Newton step: rotation of the link, displacement of the node
 };
 
@@ -60,12 +68,13 @@ struct Block {
   const NodeConstants<T, L>* constants = nullptr;
   NodeWork<T, L>* work = nullptr;
   Stash<T, L>* stashes = nullptr;
-  bool bend = false, curved = false, anyFree = false;
+  bool bend = false, curved = false, anyFree = false, lateral = false;
   alignas(64) T rootAxes[9][L];  ///< columns of the root frame for this step: normal, binormal, z
   T active[L], freeRoot[L];      ///< 1 or 0
+  T driven[L];                   ///< 1: the root is moved or turned in this step and does work
   T newtonSteps[L];              ///< out
   LaneFault fault[L];            ///< out
-  /// Writes force and stiffness for every node at work.x, work.v; null without fields.
+  /// Writes force and stiffness for every node at start + move with work.v; null without fields.
   void (*fields)(void* context) = nullptr;
   void* context = nullptr;
 };

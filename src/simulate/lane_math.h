@@ -52,6 +52,21 @@ struct Lane {
   static void store(T* p, V v) { *reinterpret_cast<V*>(p) = v; }
   static V3 load(const T (*p)[L]) { return {load(p[0]), load(p[1]), load(p[2])}; }
   static void store(T (*p)[L], const V3& v) { store(p[0], v.x), store(p[1], v.y), store(p[2], v.z); }
+  // Between double and T, one after the other: the compiler makes vectors of it.
+  static V loadDouble(const double* p) {
+    alignas(64) T t[L];
+    for (int l = 0; l < L; ++l) t[l] = T(p[l]);
+    return load(t);
+  }
+  static V3 loadDouble(const double (*p)[L]) {
+    return {loadDouble(p[0]), loadDouble(p[1]), loadDouble(p[2])};
+  }
+  static void storeDouble(double (*p)[L], const V3& v) {
+    alignas(64) T t[3][L];
+    store(t, v);
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < L; ++l) p[k][l] = double(t[k][l]);
+  }
   static Sym loadSym(const T (*p)[L]) {
     return {load(p[0]), load(p[1]), load(p[2]), load(p[3]), load(p[4]), load(p[5])};
   }
@@ -85,13 +100,5 @@ struct Lane {
     const V a = -1 / (sign + u.z), b = u.x * u.y * a;
     e1 = {1 + sign * u.x * u.x * a, sign * b, -sign * u.x};
     e2 = {b, sign + u.y * u.y * a, -u.y};
-  }
-
-  // u turned by Cayley's map of w (about w, by 2 atan |w|/2): the same w turns everything rigidly, however
-  // large it is.
-  static V3 turn(const V3& u, const V3& w) {
-    const V3 c = w.cross(u);
-    const V3 t = u + (c + w.cross(c) * all(T(0.5))) * (1 / (1 + w.dot(w) * T(0.25)));
-    return t * (T(1.5) - t.dot(t) * T(0.5));  // rounding's drift off the sphere, one Newton step
   }
 };

@@ -26,6 +26,7 @@ class Projecting : Lane<T, L> {
       Work& n = b_.work[i];
       const V3 x = load(n.x);
       store(n.v, (x - load(n.x0)) * all(1 / h));
+      Base::storeDouble(n.end, x);
       bad |= ~(x.dot(x) < all(sizeof(T) == 8 ? T(1e300) : T(1e37)));
     }
     for (int l = 0; l < L; ++l) {
@@ -46,15 +47,17 @@ class Projecting : Lane<T, L> {
     for (int i = 0; i < b_.nodes; ++i) {
       Work& n = b_.work[i];
       store(n.y, load(n.x));  // where a prescribed root goes
-      store(n.x, load(n.x0)), store(n.v, load(n.v0));
+      const V3 x0 = Base::loadDouble(n.start);
+      store(n.x0, x0), store(n.x, x0), store(n.v, load(n.v0));
+      store(n.move, V3{all(0), all(0), all(0)});
       store(n.force, V3{all(0), all(0), all(0)});
     }
     if (b_.fields != nullptr) b_.fields(b_.context);
     const V3 axes[3] = {load(&b_.rootAxes[0]), load(&b_.rootAxes[3]), load(&b_.rootAxes[6])};
     Work& root = b_.work[0];
-    store(root.normal, axes[0]), store(root.binormal, axes[1]), store(root.u, axes[2]);
+    store(root.normal, axes[0]), store(root.binormal, axes[1]), store(root.u[0], axes[2]);
     for (int i = 1; i < b_.nodes; ++i) {
-      push(i, load(b_.work[i].lateral));
+      if (b_.lateral) push(i, load(b_.work[i].lateral));
       frame(i);
       if (!kXpbd && b_.bend) jointForce(i);
     }
@@ -70,13 +73,13 @@ class Projecting : Lane<T, L> {
   void frame(int i) {
     Work& n = b_.work[i];
     const Work& p = b_.work[b_.parents[i]];
-    const V3 u = unit(load(n.x) - load(p.x)), base = load(p.u);
+    const V3 u = unit(load(n.x) - load(p.x)), base = load(p.u[0]);
     const V3 normal = load(p.normal), binormal = load(p.binormal), rest = load(b_.constants[i].rest);
     const V3 both = base + u;
     const V by = 1 / max(1 + base.dot(u), all(T(1e-6)));
     store(n.normal, normal - both * (u.dot(normal) * by));
     store(n.binormal, binormal - both * (u.dot(binormal) * by));
-    store(n.u, u);
+    store(n.u[0], u);
     store(n.target, normal * rest.x + binormal * rest.y + base * rest.z);
   }
 
@@ -84,10 +87,10 @@ class Projecting : Lane<T, L> {
     const Work& n = b_.work[i];
     const int p = b_.parents[i];
     const V kappa = load(b_.constants[i].kappa);
-    const V3 u = load(n.u), t = load(n.target);
+    const V3 u = load(n.u[0]), t = load(n.target);
     push(i, (t - u * u.dot(t)) * (kappa / load(b_.constants[i].length)));
     if (p == 0) return;
-    const V3 base = load(b_.work[p].u);
+    const V3 base = load(b_.work[p].u[0]);
     const V3 turned = base + u - t;  // the reaction that balances the torque, exact for a straight rest shape
     push(p, (turned - base * base.dot(turned)) * (kappa / load(b_.constants[p].length)));
   }

@@ -26,22 +26,6 @@ const char* name(DynamicsMethod method) {
   return "";
 }
 
-LateralTable lateralTable(const ChainSet& chains) {
-  LateralTable table;
-  if (chains.laterals.empty()) return table;
-  const std::vector<std::uint32_t> treeOf = treeOfNodes(chains);
-  table.offsets.assign(chains.nodeCount() + 1, 0);
-  for (const LateralSpring& s : chains.laterals) ++table.offsets[s.a + 1], ++table.offsets[s.b + 1];
-  for (std::size_t i = 0; i < chains.nodeCount(); ++i) table.offsets[i + 1] += table.offsets[i];
-  table.entries.resize(table.offsets.back());
-  std::vector<std::uint32_t> next(table.offsets.begin(), table.offsets.end() - 1);
-  for (const LateralSpring& s : chains.laterals) {
-    table.entries[next[s.a]++] = {s.b, treeOf[s.a], s.stiffness, -s.rest};
-    table.entries[next[s.b]++] = {s.a, treeOf[s.a], s.stiffness, s.rest};
-  }
-  return table;
-}
-
 Result<std::unique_ptr<Solver>> makeSolver(const ChainSet& chains, const SolverOptions& options) {
   COIF_TRY(validate(chains));
   const bool fine = options.gravity.allFinite() && options.maxNewton >= 1 && options.iterations >= 1 &&

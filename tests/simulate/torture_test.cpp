@@ -32,29 +32,76 @@ namespace {
 
 const Vec3 kGravity(0, -9.81, 0);
 
+// As many steps as the bench tabulates: 720 chains, 22 500 chain-steps, every bar at nobody.
 TEST(Torture, TheDirectSolverStandsTheWholeGrid) {
+  GridTally sum;
   for (const std::size_t links : {1u, 2u, 30u, 1000u}) {
     for (const double h : {1. / 240, 1. / 24, 1.}) {
-      const GridTally t = runGrid(DynamicsMethod::Direct, links, h, links > 100 ? 2 : 8);
+      const GridTally t = runGrid(DynamicsMethod::Direct, links, h, links > 100 ? 5 : 40);
       EXPECT_EQ(t.notFinite, 0) << links << " " << h;
       EXPECT_EQ(t.stretched, 0) << links << " " << h;
       EXPECT_EQ(t.risen, 0) << links << " " << h;
       EXPECT_EQ(t.wronglyReset, 0) << links << " " << h;
       EXPECT_LE(t.mostNewton, 20) << links << " " << h;
-      // Those that stop at twenty are folded back, spun or a million times heavier at the tip: measured at
-      // most an eighth of the grid, a quarter in the first two steps of a thousand links.
-      EXPECT_LE(t.notConverged * (links > 100 ? 3 : 6), t.chainSteps) << links << " " << h;
+      sum += t;
+    }
+  }
+  // Those that stop at twenty are folded back, spun or a million times heavier at the tip: measured 2.6 %.
+  EXPECT_LE(double(sum.notConverged) / sum.chainSteps, 0.03);
+}
+
+// Cut off after any number of Newton steps a chain gains nothing: φ(end) <= φ(start) and the chain is slowed
+// down by what it would gain (docs/simulate.md).
+TEST(Torture, EnergyNeverRisesHoweverFewNewtonStepsThereAre) {
+  for (const int most : {1, 2, 3}) {
+    for (const double h : {1. / 240, 1. / 24, 1.}) {
+      const GridTally t = runGrid(DynamicsMethod::Direct, 30, h, 40, false, most);
+      EXPECT_EQ(t.risen, 0) << most << " " << h;
+      EXPECT_EQ(t.notFinite + t.stretched + t.wronglyReset, 0) << most << " " << h;
+      EXPECT_EQ(t.mostNewton, most);
     }
   }
 }
 
-TEST(Torture, FloatLanesKeepTheirLengths) {
+TEST(Torture, FloatLanesKeepTheirLengthsAndGainNothing) {
   for (const std::size_t links : {1u, 2u, 30u}) {
     for (const double h : {1. / 240, 1. / 24, 1.}) {
-      const GridTally t = runGrid(DynamicsMethod::Direct, links, h, 4, true);
+      const GridTally t = runGrid(DynamicsMethod::Direct, links, h, 40, true);
       EXPECT_EQ(t.notFinite, 0) << links << " " << h;
       EXPECT_EQ(t.stretched, 0) << links << " " << h;
+      EXPECT_EQ(t.risen, 0) << links << " " << h;
     }
+  }
+}
+
+// What single precision costs: differences are what the kernel counts in, so a short step is as exact as a
+// long one.
+TEST(FloatLanes, AreAsNearAsDoubleOnesAtShortSteps) {
+  ChainSet chains = repeated(straightChain(30, 1, Vec3(0.5, -0.9, 0), 1. / 30), 20);
+  for (std::size_t t = 0; t < 20; ++t) {  // far from the origin, where a float's step is 4e-6
+    for (std::uint32_t i = chains.treeOffsets[t]; i < chains.treeOffsets[t + 1]; ++i)
+      chains.restPositions[i].x() += 60;
+  }
+  for (const DynamicsMethod method :
+       {DynamicsMethod::Direct, DynamicsMethod::DirectBdf2, DynamicsMethod::EnergyKeeping}) {
+    std::vector<ChainState> ends;
+    for (const bool single : {false, true}) {
+      SolverOptions options;
+      options.method = method;
+      options.floatLanes = single;
+      options.tolerance = single ? 1e-5 : 1e-9;
+      const auto solver = makeSolver(chains, options).value();
+      ChainState state = restState(chains);
+      const StepReport report = samples::run(*solver, state, 0.5, 1. / 1008);
+      EXPECT_LE(report.maxNewton, 4) << name(method);
+      ends.push_back(state);
+    }
+    EXPECT_LE(maxStretch(chains, ends[1].positions), 1e-6);  // a length in single precision
+    double worst = 0;
+    for (std::size_t i = 0; i < chains.nodeCount(); ++i)
+      worst = std::max(worst, (ends[0].positions[i] - ends[1].positions[i]).norm());
+    // 504 steps whose turns are rounded at 6e-8 of a link; Euler's own error here is 1e-3.
+    EXPECT_LE(worst, 1e-4) << name(method);
   }
 }
 
