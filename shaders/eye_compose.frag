@@ -28,3 +28,28 @@ void main() {
   color = vec4(sum, 1.0 - left);
 }
 #endif
+
+#ifdef COMPOSE_LAYERS
+#include "frame.glsl"
+#include "eye_layers.glsl"
+layout(location = 4) uniform vec2 depthRange;   // nearest, farthest
+void main() {
+  uint index = pixelIndex(ivec2(gl_FragCoord.xy));
+  if (nearest[index] == 0xffffffffu) discard;
+  float left = 1.0, depth = uintBitsToFloat(nearest[index]);
+  vec3 sum = vec3(0);
+  for (uint k = 0u; k < uint(kLayers); ++k) {
+    Layer layer = layers[index * uint(kLayers) + k];
+    vec4 all = vec4(layer.red, layer.green, layer.blue, layer.depth);
+    all += 4294967296.0 * vec4((uvec4(layer.carried) >> uvec4(0u, 8u, 16u, 24u)) & 255u);
+    if (!(all.w > 0.0)) continue;
+    float after = left * exp(-all.w * kUnit);
+    sum += (left - after) * all.rgb / all.w;
+    left = after;
+  }
+  color = vec4(sum, 1.0 - left);
+  // What is drawn over the picture later is in front of the hair, or hidden by it; thin hair hides nothing.
+  if (left > 0.5) depth = headDepths[index].x;
+  gl_FragDepth = clamp((depthRange.y - depthRange.x * depthRange.y / depth) / (depthRange.y - depthRange.x), 0.0, 1.0);
+}
+#endif

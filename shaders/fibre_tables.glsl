@@ -4,17 +4,16 @@ layout(std140, binding = 2) uniform Fibre {
   vec4 lobeShifts, lobeVariances;  // R, TT, TRT, rest, over θ_i + θ_o
   ivec4 fibreCounts;               // model; inclinations; inclinations of the azimuthal tables
   vec4 fibreDensities;             // d_f, d_b
-  vec4 fibreAlbedo;                // of dense hair
 };
 const int kKajiyaKay = 0, kMarschner = 1, kChiang = 2;
 layout(binding = 5) uniform sampler2DArray azimuthalTable;   // x: 0 … π, y: 0 … π/2; N of four lobes, then N^G
-layout(binding = 6) uniform sampler2D inclinationTable;      // ā_f, β̄_f²; Ā_b, Δ̄_b, σ̄_b² over θ_diff
+layout(binding = 6) uniform sampler2D inclinationTable;      // ā_f, β̄_f²; Ā_b, Δ̄_b, σ̄_b² over θ_diff; ā_b
 const float kPi = 3.14159265, kHalfPi = 1.57079633;
 
 vec3 overInclination(int row, float theta) {
   float n = float(fibreCounts.y);
   float x = ((theta / kPi + 0.5) * (n - 1.0) + 0.5) / n;
-  return texture(inclinationTable, vec2(x, (float(row) + 0.5) / 5.0)).rgb;
+  return texture(inclinationTable, vec2(x, (float(row) + 0.5) / 6.0)).rgb;
 }
 vec3 overAzimuth(int layer, float inclination, float phi) {
   vec2 n = vec2(textureSize(azimuthalTable, 0).xy);
@@ -77,6 +76,15 @@ vec3 singleScattering(Bearings b, vec3 variance, bool scattered) {
     sum += along * overAzimuth(lobe + (scattered ? 4 : 0), at, b.phi);
   }
   return sum;
+}
+
+// Of even light from the eye's side: what one hair sends back, and what the hairs around it do.
+vec3 evenAlbedo(float thetaO) {
+#ifdef SHADING_DUAL
+  return overInclination(5, thetaO) + fibreDensities.y * overInclination(2, thetaO);
+#else
+  return overInclination(5, thetaO);
+#endif
 }
 
 #ifdef SHADING_DUAL

@@ -5,8 +5,8 @@
 #include "random.glsl"
 #include "strand_buffer.glsl"
 #ifdef SHADOWS
+#define WITH_HEAD
 #include "visibility.glsl"
-layout(binding = 7) uniform sampler3D hairVolume;     // lightVolume without the head
 #endif
 #ifdef SHADING_STUDIO
 #include "fibre.glsl"
@@ -23,13 +23,14 @@ struct Reach {
   vec4 keyDepths[4], keyWeights[4];   // by look-up
   vec3 pastHead;                      // key, fill, rim
   vec2 depths;                        // of hair, fill and rim
-  float sky;
+  float sky, ground;                  // open part of the upper and of the lower half of the sphere around
 };
 Reach reachOf(vec3 p, uint seed, uint point) {
   Reach reach;
   reach.pastHead = vec3(1);
   reach.depths = vec2(0);
   reach.sky = 1.0;
+  reach.ground = 1.0;
   for (int k = 0; k < 4; ++k) reach.keyDepths[k] = vec4(0), reach.keyWeights[k] = vec4(0);
   reach.keyWeights[0].x = 1.0;
 #ifdef SHADOWS
@@ -40,12 +41,13 @@ Reach reachOf(vec3 p, uint seed, uint point) {
     Taps taps = keyTaps(p, offset);
     reach.keyDepths[k] = taps.depths;
     reach.keyWeights[k] = taps.weights / float(lookUps);
-    lit += keyPastHead(p, offset) / float(lookUps);
+    lit += keyPastHead(p, offset, shadowInfo.w) / float(lookUps);
   }
   vec4 all = volumeAt(p), hair = volumeIn(hairVolume, p);
   reach.pastHead = vec3(lit, exp(-max(all.yz - hair.yz, 0.0)));
   reach.depths = hair.yz;
   reach.sky = all.w;
+  reach.ground = all.x;
 #endif
   return reach;
 }
@@ -88,7 +90,9 @@ vec3 shade(StrandPoint p, uint seed, vec3 toEye, Reach reach) {
     sum += lightColor[l].rgb * reach.pastHead[l] *
            reachedThrough(b, vec4(reach.depths[l - 1], 0, 0, 0), vec4(1, 0, 0, 0));
   }
-  return sum + mix(groundColor.rgb, skyColor.rgb, upness(t)) * fibreAlbedo.rgb * reach.sky;
+  // Half of the sphere around lights the eye's side of a hair. Where hair hides no part of it, both halves are open.
+  vec3 around = skyColor.rgb * reach.sky + groundColor.rgb * reach.ground;
+  return sum + around / max(reach.sky + reach.ground, 1.0) * evenAlbedo(key.thetaO);
 }
 #endif
 

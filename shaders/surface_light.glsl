@@ -9,12 +9,13 @@ struct SurfaceLight {
 SurfaceLight lightOn(vec3 p, vec3 n) {
   float u = 6.2831853 * random3(uint(gl_FragCoord.x), uint(gl_FragCoord.y), uint(viewport.z));
   vec4 hair = volumeAt(p + n * volumeLo.w);
-  vec3 above = p + n * shadowInfo.w;
+  // A surface r texels away is at most r sin θ texels, along its normal, nearer to the light.
+  vec3 above = p + n * (2.5 * shadowInfo.z);
   float key = 0.0;
   for (int k = 0; k < 4; ++k) {
     float a = u + 1.5707963 * float(k);
-    vec2 offset = (1.0 + float(k)) * vec2(cos(a), sin(a));
-    key += 0.25 * keyPastHead(above, offset) * keyTransmittance(keyTaps(above, offset), vec3(1)).x;
+    vec2 offset = 0.5 * (1.0 + float(k)) * vec2(cos(a), sin(a));
+    key += 0.25 * keyPastHead(above, offset, 0.0) * keyTransmittance(keyTaps(above, offset), vec3(1)).x;
   }
   return SurfaceLight(vec3(key, exp(-0.8 * hair.y), exp(-0.8 * hair.z)), hair.w);
 }

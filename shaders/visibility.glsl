@@ -1,6 +1,13 @@
 // How much light reaches a point through the hair.
 #include "hair_map_query.glsl"
-layout(binding = 0) uniform sampler3D lightVolume;     // optical depth to key, fill, rim; open sky in w
+// Optical depth to key, fill and rim; open part of the sky in w. WITH_HEAD: the head stops light too, and x is the open
+// part of the ground.
+layout(binding = 0) uniform sampler3D lightVolume;
+#ifdef WITH_HEAD
+layout(binding = 7) uniform sampler3D hairVolume;      // without the head
+#else
+#define hairVolume lightVolume
+#endif
 layout(binding = 1) uniform sampler2D headDepthMap;    // first head surface from the key light
 
 vec4 volumeIn(sampler3D volume, vec3 p) {
@@ -17,14 +24,14 @@ vec4 volumeAt(vec3 p) { return volumeIn(lightVolume, p); }
 // leans towards it does not shadow itself.
 Taps keyTaps(vec3 p, vec2 offsetTexels) {
 #ifdef LIGHT_MAP
-  return Taps(vec4(volumeAt(p).x, 0, 0, 0), vec4(1, 0, 0, 0));
+  return Taps(vec4(volumeIn(hairVolume, p).x, 0, 0, 0), vec4(1, 0, 0, 0));
 #else
   return mapTaps(p + lightDirection[0].xyz * (0.5 * mapInfo.z), offsetTexels, shadowInfo.x > 0.5);
 #endif
 }
 
-// 1 lit, 0 behind the head.
-float keyPastHead(vec3 p, vec2 offsetTexels) {
+// 1 lit, 0 behind the head by more than `bias`.
+float keyPastHead(vec3 p, vec2 offsetTexels, float bias) {
   vec4 s = mapProject(p);
   vec2 t = s.xy - 0.5 + offsetTexels;
   if (!(s.w > 0.0) || any(lessThan(t, vec2(0))) || any(greaterThan(t, vec2(mapInfo.x - 2.0)))) return 1.0;
@@ -35,7 +42,7 @@ float keyPastHead(vec3 p, vec2 offsetTexels) {
     ivec2 o = ivec2(k & 1, k >> 1);
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     float first = texelFetch(headDepthMap, base + o, 0).r;   // 1: no head, however far p lies behind the scene
-    sum += w * (first == 1.0 || first * shadowInfo.y + shadowInfo.w >= s.z ? 1.0 : 0.0);
+    sum += w * (first == 1.0 || first * shadowInfo.y + bias >= s.z ? 1.0 : 0.0);
   }
   return sum;
 }

@@ -32,11 +32,13 @@ constexpr std::pair<const char*, PreviewShading> kShadings[] = {
     {"dual-scattering", PreviewShading::DualScattering}};
 
 constexpr std::pair<const char*, PreviewTransparency> kTransparencies[] = {
+    {"auto", PreviewTransparency::Auto},
     {"opaque", PreviewTransparency::Opaque},
     {"stochastic", PreviewTransparency::Stochastic},
     {"alpha-to-coverage", PreviewTransparency::AlphaToCoverage},
     {"weighted-average", PreviewTransparency::WeightedAverage},
     {"occupancy-ordered", PreviewTransparency::OccupancyOrdered},
+    {"depth-layers", PreviewTransparency::DepthLayers},
     {"exact-lists", PreviewTransparency::ExactLists}};
 
 /// What a word of the table means; the first entry's meaning for a word that is not in it.

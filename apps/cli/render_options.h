@@ -17,7 +17,7 @@ namespace coif::cli {
 
 struct RenderArguments {
   std::string scene, output, size = "1024x1024", camera, light, lod = "auto", shading = "studio", hair,
-                             visibility = "deep-opacity", layers = "7", transparency = "stochastic";
+                             visibility = "deep-opacity", layers = "7", transparency = "auto";
   std::vector<float> color;
   int samplesPerPixel = 64, turntable = 0;
   double targetError = 0;

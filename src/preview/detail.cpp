@@ -9,6 +9,7 @@ namespace coif::preview {
 namespace {
 
 constexpr std::uint32_t kFine = 8;  // samples of a segment between control points, before simplification
+constexpr double kThinPx = 3;       // wider ribbons show how segments meet
 constexpr double kEnough = 0.9;     // of the examples must keep the tolerance
 
 double stepped(double size) {
@@ -248,7 +249,9 @@ DetailPlan makePlan(const HairModel& model, const DetailOptions& options, const 
   const std::size_t prefix =
       prefixLength(model, segments / std::max<double>(double(model.strands), 1), options, pixelAt);
   plan.widthScale = model.baseScale * (prefix > 0 ? double(model.strands) / double(prefix) : 1);
-  plan.lines = options.lines && plan.widthScale * greatestWidthPx(model, pixelAt) <= 1;
+  const double greatest = plan.widthScale * greatestWidthPx(model, pixelAt);
+  plan.lines = options.lines && greatest <= 1;
+  plan.thin = greatest <= kThinPx;
   for (std::size_t l = 0; l < parameters.size(); ++l) {
     if (parameters[l].empty()) continue;
     const auto& ranks = model.members[l].ranks;

@@ -31,6 +31,7 @@ struct DetailPlan {
   std::size_t strands = 0, points = 0, columns = 0;
   double widthScale = 1;
   bool lines = false;  ///< no strand is wider than a pixel: lines do
+  bool thin = false;   ///< hardly a strand is wider than a few pixels
 
   std::size_t segments() const { return points - strands; }
   std::size_t bytes() const { return shares.size() * sizeof(Share) + parameters.size() * sizeof(float); }

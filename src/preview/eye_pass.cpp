@@ -38,6 +38,8 @@ std::vector<ProgramSource> eyePrograms() {
   all.push_back({"fullscreen.vert", "eye_compose.frag", {"COMPOSE_LISTS", "LIST_OF_EYE"}});
   all.push_back({"lists_sort.comp", "", {"LIST_OF_EYE"}});
   all.push_back({"head.vert", "shadow_depth.frag", {}});
+  const std::vector<ProgramSource> layers = EyeLayers::programs();
+  all.insert(all.end(), layers.begin(), layers.end());
   return all;
 }
 
@@ -46,6 +48,10 @@ Result<EyePass> EyePass::create(PreviewTransparency method, int width, int heigh
   pass.method_ = method;
   pass.width_ = width, pass.height_ = height;
   if (inPlace(method)) return pass;
+  if (method == PreviewTransparency::DepthLayers) {
+    pass.layers_.emplace(width, height);
+    return pass;
+  }
   GLuint depth = 0;
   glCreateRenderbuffers(1, &depth);
   pass.depth_ = Renderbuffer(depth);
@@ -78,6 +84,7 @@ ProgramSource EyePass::strandProgram(const EyeScene& scene, const char* name) co
 
 Status EyePass::draw(const EyeScene& scene) const {
   switch (method_) {
+    case PreviewTransparency::Auto:  // resolved by the session
     case PreviewTransparency::Opaque:
       drawInPlace(scene, "EYE_OPAQUE");
       break;
@@ -97,6 +104,9 @@ Status EyePass::draw(const EyeScene& scene) const {
     case PreviewTransparency::OccupancyOrdered:
       if (scene.cameraMap != nullptr) scene.cameraMap->bind();
       drawWeighted(scene, "EYE_OCCUPANCY");
+      break;
+    case PreviewTransparency::DepthLayers:
+      layers_->draw(scene);
       break;
     case PreviewTransparency::ExactLists:
       return drawLists(scene);

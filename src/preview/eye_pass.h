@@ -3,21 +3,10 @@
 
 #include <optional>
 
+#include "preview/eye_layers.h"
 #include "preview/fragment_lists.h"
-#include "preview/hair_map.h"
-#include "preview/passes.h"
 
 namespace coif::preview {
-
-/// What is drawn, and over what.
-struct EyeScene {
-  const Programs& programs;
-  const StrandBuffers& strands;  ///< ribbons, or lines
-  const HeadBuffers* head;       ///< may be null
-  const HairMap* cameraMap;      ///< OccupancyOrdered: what lies in front, seen from the camera
-  const FrameTargets& targets;
-  const VertexArray& empty;
-};
 
 /// Programs of a method: of its strands, and of what puts them over the picture.
 std::vector<ProgramSource> eyePrograms();
@@ -45,6 +34,7 @@ class EyePass {
   Texture sum_, transmittance_;
   Renderbuffer depth_;
   Framebuffer own_;
+  std::optional<EyeLayers> layers_;
 };
 
 }  // namespace coif::preview

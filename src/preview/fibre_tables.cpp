@@ -12,9 +12,9 @@ namespace {
 struct FibreBlock {
   Vec4f shifts, variances;
   std::int32_t counts[4];
-  Vec4f densities, albedo;
+  Vec4f densities;
 };
-static_assert(sizeof(FibreBlock) == 80);
+static_assert(sizeof(FibreBlock) == 64);
 
 Texture floatTexture(GLenum target, int width, int height, int layers) {
   GLuint name = 0;
@@ -29,6 +29,18 @@ Texture floatTexture(GLenum target, int width, int height, int layers) {
   glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   return Texture(name);
+}
+
+// ā_b at the tables' inclinations: what a hair sends back of light from the eye's side.
+std::vector<float> backwardAttenuation(const DualScattering& dual) {
+  const int count = dual.tables().inclinations;
+  std::vector<float> out;
+  for (int i = 0; i < count; ++i) {
+    const double theta = 3.14159265358979323846 * (double(i) / (count - 1) - 0.5);
+    for (int channel = 0; channel < 3; ++channel)
+      out.push_back(float(dual.means(theta, channel).attenuationBackward));
+  }
+  return out;
 }
 
 }  // namespace
@@ -62,17 +74,17 @@ FibreTables::FibreTables(const FibreParameters& fibre) : fibre_(fibre) {
   mostForward_ = double(*std::ranges::max_element(tables.forwardAttenuation));
 
   azimuthal_ = floatTexture(GL_TEXTURE_2D_ARRAY, tables.azimuths, tables.azimuthInclinations, 8);
-  inclination_ = floatTexture(GL_TEXTURE_2D, tables.inclinations, 5, 1);
+  inclination_ = floatTexture(GL_TEXTURE_2D, tables.inclinations, 6, 1);
   int layer = 0;
   for (const auto* table : {&tables.azimuthal, &tables.azimuthalScattered}) {
     glTextureSubImage3D(azimuthal_.name(), 0, 0, 0, layer, tables.azimuths, tables.azimuthInclinations, 4,
                         GL_RGB, GL_FLOAT, table->data());
     layer += 4;
   }
+  const std::vector<float> backward = backwardAttenuation(dual);
   int row = 0;
-  for (const auto* table :
-       {&tables.forwardAttenuation, &tables.forwardVariance, &tables.backscatterAttenuation,
-        &tables.backscatterShift, &tables.backscatterVariance}) {
+  for (const auto* table : {&tables.forwardAttenuation, &tables.forwardVariance, &tables.backscatterAttenuation,
+                            &tables.backscatterShift, &tables.backscatterVariance, &backward}) {
     glTextureSubImage2D(inclination_.name(), 0, 0, row++, tables.inclinations, 1, GL_RGB, GL_FLOAT,
                         table->data());
   }
@@ -87,8 +99,6 @@ FibreTables::FibreTables(const FibreParameters& fibre) : fibre_(fibre) {
   block.counts[3] = 0;
   const auto& densities = dual.parameters();
   block.densities = Vec4f(float(densities.forwardDensity), float(densities.backwardDensity), 0, 0);
-  const Vec3 albedo = albedoFromAbsorption(a, fibre.azimuthalRoughness);
-  block.albedo = Vec4f(float(albedo.x()), float(albedo.y()), float(albedo.z()), 0);
   uniforms_ = makeBuffer(std::span<const FibreBlock>(&block, 1));
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "preview/synthesis.h"
+
 namespace coif::preview {
 
 FragmentLists::FragmentLists(int width, int height)
@@ -50,14 +52,12 @@ void FragmentLists::bind() const {
 }
 
 void FragmentLists::sort(GLuint program) const {
-  constexpr GLuint kGroup = 64, kMostGroups = 32768;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   bind();
-  const GLuint count = GLuint(width_) * GLuint(height_), groups = (count + kGroup - 1) / kGroup;
+  const GLuint count = GLuint(width_) * GLuint(height_);
   glUseProgram(program);
   glUniform1ui(0, count);
-  const GLuint x = std::min(groups, kMostGroups);
-  glDispatchCompute(x, (groups + x - 1) / x, 1);
+  dispatchInvocations(count);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

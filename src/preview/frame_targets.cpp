@@ -9,15 +9,12 @@ Result<FrameTargets> FrameTargets::create(int width, int height) {
   t.width_ = width;
   t.height_ = height;
   t.color_ = makeTexture2d(GL_RGBA16F, width, height, kSamples);
-  GLuint depth = 0;
-  glCreateRenderbuffers(1, &depth);
-  t.depth_ = Renderbuffer(depth);
-  glNamedRenderbufferStorageMultisample(depth, kSamples, GL_DEPTH_COMPONENT32F, width, height);
+  t.depth_ = makeTexture2d(GL_DEPTH_COMPONENT32F, width, height, kSamples);
   t.sum_ = makeTexture2d(GL_RGBA32F, width, height);
   t.bytes_ = makeTexture2d(GL_RGBA8, width, height);
   t.subframe_ = makeFramebuffer();
   glNamedFramebufferTexture(t.subframe_.name(), GL_COLOR_ATTACHMENT0, t.color_.name(), 0);
-  glNamedFramebufferRenderbuffer(t.subframe_.name(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+  glNamedFramebufferTexture(t.subframe_.name(), GL_DEPTH_ATTACHMENT, t.depth_.name(), 0);
   t.total_ = makeFramebuffer();
   glNamedFramebufferTexture(t.total_.name(), GL_COLOR_ATTACHMENT0, t.sum_.name(), 0);
   t.last_ = makeFramebuffer();
@@ -48,13 +45,14 @@ void FrameTargets::begin() const {
   glClearNamedFramebufferfv(subframe_.name(), GL_DEPTH, 0, &farthest);
 }
 
-void FrameTargets::accumulate(const Programs& programs, const VertexArray& empty) const {
+void FrameTargets::accumulate(const Programs& programs, const VertexArray& empty, double shoulder) const {
   glBindFramebuffer(GL_FRAMEBUFFER, total_.name());
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glUseProgram(programs[ProgramId::Resolve]);
   glUniform1i(0, kSamples);
+  glUniform1f(1, float(shoulder));
   glBindTextureUnit(0, color_.name());
   glBindVertexArray(empty.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -79,30 +79,51 @@ std::vector<Vec3> skyDirections(const Vec3& up) {
   return result;
 }
 
+/// `ground`: how open the ground is, in place of the depth to the first light.
 LightVolume lit(const LightVolume& empty, std::span<const float> optical, const Vec3 (&lights)[3],
-                const Vec3& up, const Context& context) {
+                const Vec3& up, bool ground, const Context& context) {
   std::vector<Vec3> directions(lights, lights + 3);
   for (const Vec3& direction : skyDirections(up)) directions.push_back(direction);
+  const std::size_t upper = directions.size();
+  if (ground) {
+    for (const Vec3& direction : skyDirections(-up)) directions.push_back(direction);
+  }
   std::vector<std::vector<float>> depths(directions.size());
   parallelFor(context, directions.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(empty, optical, directions[d]);
   });
   LightVolume grid = empty;
   grid.values.resize(optical.size());
-  const float part = 1 / float(directions.size() - 3);
   parallelFor(context, optical.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    const auto of = [&](std::size_t d) {
-      return Eigen::Map<const Eigen::ArrayXf>(depths[d].data() + begin, Eigen::Index(end - begin));
+    const auto open = [&](std::size_t first, std::size_t last) {
+      Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(Eigen::Index(end - begin));
+      for (std::size_t d = first; d < last; ++d) {
+        const Eigen::Map<const Eigen::ArrayXf> depth(depths[d].data() + begin, sum.size());
+        sum += (-kSkyOpacity * depth).exp() / float(last - first);
+      }
+      return sum;
     };
-    Eigen::ArrayXf sky = Eigen::ArrayXf::Zero(Eigen::Index(end - begin));
-    for (std::size_t d = 3; d < depths.size(); ++d) sky += part * (-kSkyOpacity * of(d)).exp();
-    for (std::size_t i = begin; i < end; ++i)
-      grid.values[i] = Vec4f(depths[0][i], depths[1][i], depths[2][i], sky[Eigen::Index(i - begin)]);
+    const Eigen::ArrayXf sky = open(3, upper);
+    const Eigen::ArrayXf first = ground ? open(upper, depths.size())
+                                        : Eigen::ArrayXf(Eigen::Map<const Eigen::ArrayXf>(
+                                              depths[0].data() + begin, sky.size()));
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto at = Eigen::Index(i - begin);
+      grid.values[i] = Vec4f(first[at], depths[1][i], depths[2][i], sky[at]);
+    }
   });
   return grid;
 }
 
 }  // namespace
+
+double meanExtinction(const CoarseStrands& strands) {
+  if (strands.points.empty()) return 0;
+  const LightVolume grid = makeGrid(strands.box);
+  double sum = 0, squares = 0;
+  for (const float cell : hairOpticalSize(grid, strands)) sum += cell, squares += double(cell) * cell;
+  return sum > 0 ? squares / sum / grid.cell : 0;
+}
 
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
                                      const Vec3& direction) {
@@ -158,8 +179,9 @@ LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec
                               const Context& context) {
   LightVolumes result;
   if (fog.hairOnly.empty()) return result;
-  result.hairOnly = lit(fog.grid, fog.hairOnly, lights, up, context);
-  result.withHead = fog.withHead.empty() ? result.hairOnly : lit(fog.grid, fog.withHead, lights, up, context);
+  result.hairOnly = lit(fog.grid, fog.hairOnly, lights, up, false, context);
+  result.withHead =
+      lit(fog.grid, fog.withHead.empty() ? fog.hairOnly : fog.withHead, lights, up, true, context);
   return result;
 }
 

@@ -22,7 +22,7 @@ struct LightVolume {
 
 struct LightVolumes {
   LightVolume hairOnly;  ///< for the head's own shading
-  LightVolume withHead;  ///< the head stops light too: for the hair's
+  LightVolume withHead;  ///< the head stops light too: for the hair's; x is the open part of the ground
 };
 
 /// What does not depend on the light: the extinction of each cell times its size.
@@ -39,6 +39,9 @@ Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head);
 /// for any number of threads.
 LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
                               const Context& context);
+
+/// Optical depth a unit of length that light meets in the hair, as a mean over the hairs' places; 0 without hair.
+double meanExtinction(const CoarseStrands& strands);
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,

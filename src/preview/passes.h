@@ -66,7 +66,7 @@ class ShadowPass {
 
 /// Every program and permutation that the room can ask for; a test compiles them all.
 std::vector<ProgramSource> allPermutations();
-ProgramSource headProgram(const VisibilityOptions& visibility);
+ProgramSource headProgram(const VisibilityOptions& visibility, bool studio);
 ProgramSource groundProgram(const VisibilityOptions& visibility);
 /// `fibre` null: the shading without tables.
 ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
@@ -93,13 +93,14 @@ class FrameTargets {
   void clear() const;  ///< the sum of the sub-frames
   void begin() const;  ///< binds and clears the sub-frame
   void bind() const;   ///< the sub-frame
-  void accumulate(const Programs& programs, const VertexArray& empty) const;
+  GLuint depth() const { return depth_.name(); }  ///< of the sub-frame, a multi-sampled texture
+  /// `shoulder`: by how much a sample of 1 is compressed; 0 keeps light as it is.
+  void accumulate(const Programs& programs, const VertexArray& empty, double shoulder) const;
   Image finish(const Programs& programs, const VertexArray& empty, int subframes) const;
 
  private:
   int width_ = 0, height_ = 0;
-  Texture color_, sum_, bytes_;
-  Renderbuffer depth_;
+  Texture color_, depth_, sum_, bytes_;
   Framebuffer subframe_, total_, last_;
 };
 

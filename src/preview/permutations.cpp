@@ -2,8 +2,10 @@
 
 namespace coif::preview {
 
-ProgramSource headProgram(const VisibilityOptions& visibility) {
-  return {"head.vert", "head.frag", mapDefines(visibility)};
+ProgramSource headProgram(const VisibilityOptions& visibility, bool studio) {
+  ProgramSource source{"head.vert", "head.frag", mapDefines(visibility)};
+  if (studio) source.defines.push_back("SHADING_STUDIO");
+  return source;
 }
 
 ProgramSource groundProgram(const VisibilityOptions& visibility) {
@@ -34,6 +36,8 @@ std::vector<ProgramSource> allPermutations() {
   std::vector<std::vector<std::string>> lights = mapQueryPermutations();
   for (std::vector<std::string>& defines : lights) {
     all.push_back({"head.vert", "head.frag", defines});
+    all.push_back(all.back());
+    all.back().defines.push_back("SHADING_STUDIO");
     all.push_back({"ground.vert", "ground.frag", defines});
     defines.push_back("SHADOWS");
   }

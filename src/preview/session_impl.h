@@ -36,6 +36,7 @@ struct PreviewSession::Impl {
   DetailOptions shadowDetail;  ///< of the strands in the maps
   std::unique_ptr<FibreTables> fibre;
   std::unique_ptr<EyePass> eye;
+  double eyeLayerSize = 0;  ///< of DepthLayers
   std::unique_ptr<StrandBuffers> eyeLines;  ///< OccupancyOrdered's map of the camera
   bool eyeLinesOld = false;
   std::unique_ptr<HairMap> cameraMap;
@@ -58,9 +59,11 @@ struct PreviewSession::Impl {
                      const Context& context);
   Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
               Picture& picture, const Context& context);
-  Status drawSubframe(const PreviewOptions& options) const;
+  Status drawSubframe(const PreviewOptions& options, const View& view) const;
   void shade(const PreviewOptions& options, Picture& picture);
   Status makeEye(const PreviewOptions& options, const View& view, Picture& picture);
+  PreviewTransparency chooseTransparency(const PreviewOptions& options, const View& view,
+                                         Picture& picture) const;
   double leastCoverage(const View& view) const;
   void dropHair();
   /// Runs `action` with the context current; nothing happens where it cannot be.

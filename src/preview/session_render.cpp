@@ -322,12 +322,7 @@ void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture
 
 Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& view, Picture& picture) {
   if (!hair) return {};
-  PreviewTransparency method = options.transparency;
-  if (options.leaveOut && method != PreviewTransparency::Opaque && leastCoverage(view) >= 1) {
-    method = PreviewTransparency::Opaque;
-    report(picture, "transparency", StageState::Skipped,
-           "every hair is wider than a pixel: the depth buffer decides");
-  }
+  const PreviewTransparency method = chooseTransparency(options, view, picture);
   if (eye == nullptr || eye->method() != method || targetWidth != options.width ||
       targetHeight != options.height) {
     eye.reset();
@@ -335,6 +330,10 @@ Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& 
     eye = std::make_unique<EyePass>(std::move(made));
   }
   cameraMap.reset();
+  if (method == PreviewTransparency::DepthLayers) {
+    constexpr double kFirstLayer = 0.25;  // optical depths: eight linear layers then reach nine
+    eyeLayerSize = kFirstLayer / std::max(meanExtinction(hair->model.coarse), 1e-3 / box().diagonal());
+  }
   if (method != PreviewTransparency::OccupancyOrdered) return {};
   follow(eyeLines, eyeLinesOld, eyeStrands->plan(), "strands for the camera's map", options.keep,
          options.measure, hair->model, *hairBuffers, *device->programs, Topology::Segments, picture);
@@ -349,6 +348,18 @@ Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& 
   return {};
 }
 
+PreviewTransparency PreviewSession::Impl::chooseTransparency(const PreviewOptions& options, const View& view,
+                                                             Picture& picture) const {
+  if (options.leaveOut && options.transparency != PreviewTransparency::Opaque && leastCoverage(view) >= 1) {
+    report(picture, "transparency", StageState::Skipped,
+           "every hair is wider than a pixel: the depth buffer decides");
+    return PreviewTransparency::Opaque;
+  }
+  if (options.transparency != PreviewTransparency::Auto) return options.transparency;
+  const bool layers = device->gl->software() && eyeStrands->plan().thin;
+  return layers ? PreviewTransparency::DepthLayers : PreviewTransparency::Stochastic;
+}
+
 // Of a pixel by the thinnest of the coarse strands' points, without the ribbon's own widening.
 double PreviewSession::Impl::leastCoverage(const View& view) const {
   double least = INFINITY;
@@ -359,8 +370,10 @@ double PreviewSession::Impl::leastCoverage(const View& view) const {
   return least * eyeStrands->plan().widthScale / std::max(coarse.scale, 1e-300);
 }
 
-Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
+Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options, const View& view) const {
+  constexpr double kShoulder = 0.25;
   const Programs& programs = *device->programs;
+  const bool studio = options.shading == PreviewShading::Studio;
   targets->begin();
   if (!options.transparentBackground) {
     glUseProgram(programs[ProgramId::Backdrop]);
@@ -370,7 +383,7 @@ Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
   glEnable(GL_DEPTH_TEST);
   if (headBuffers != nullptr) {
     shadows->bindForHead();
-    glUseProgram(programs(headProgram(shadows->map().options())));
+    glUseProgram(programs(headProgram(shadows->map().options(), studio)));
     headBuffers->draw();
   }
   if (ground) {
@@ -379,10 +392,11 @@ Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options) const {
                shadows->map().options());
   }
   if (hair) {
-    COIF_TRY(eye->draw({programs, *eyeStrands, headBuffers.get(), cameraMap.get(), *targets, device->empty}));
+    COIF_TRY(eye->draw({programs, *eyeStrands, headBuffers.get(), cameraMap.get(), *targets, device->empty,
+                        view, eyeLayerSize}));
   }
   if (overlayPass != nullptr) overlayPass->draw(programs);
-  targets->accumulate(programs, device->empty);
+  targets->accumulate(programs, device->empty, studio ? kShoulder : 0);
   return {};
 }
 
@@ -402,7 +416,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
     frame.viewport.z() = float(k);
     glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-    COIF_TRY(drawSubframe(options));
+    COIF_TRY(drawSubframe(options, view));
     context.report("picture", double(k + 1) / options.subframes);
   }
   picture.image = targets->finish(*device->programs, device->empty, options.subframes);

@@ -48,6 +48,10 @@ Vec3f tangentFrom(std::uint32_t bits) {
 
 }  // namespace
 
+void dispatchInvocations(std::size_t count) {
+  dispatch((count + kGroup - 1) / kGroup);
+}
+
 Buffer emptyBuffer(std::size_t bytes, GLbitfield flags) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
@@ -141,7 +145,7 @@ void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const 
     glUniform1ui(1, GLuint(indexOffsets_[b]));
     glUniform1ui(10, batch.firstShare);
     glUniform1ui(11, batch.shares);
-    dispatch((batch.points + kGroup - 1) / kGroup);
+    dispatchInvocations(batch.points);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                   GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -180,7 +184,7 @@ void StrandBuffers::dispatchPoints() const {
     const Batch& batch = plan_.batches[b];
     bindBatch(b);
     glUniform1ui(0, batch.points);
-    dispatch((batch.points + kGroup - 1) / kGroup);
+    dispatchInvocations(batch.points);
   }
 }
 

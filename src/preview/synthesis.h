@@ -68,6 +68,9 @@ class StrandBuffers {
   VertexArray array_;
 };
 
+/// The bound program, in groups of 64: gl_WorkGroupID.y counts whole rows of groups.
+void dispatchInvocations(std::size_t count);
+
 /// A buffer of that many bytes, undefined.
 Buffer emptyBuffer(std::size_t bytes, GLbitfield flags = 0);
 

@@ -47,14 +47,17 @@ enum class PreviewShading {
   DualScattering,  ///< the same with multiple scattering (Zinke et al. 2008)
 };
 
-/// What covers a pixel in part. All but the first keep a hair's coverage, width over pixel.
+/// What covers a pixel in part. All but Opaque keep a hair's coverage, width over pixel.
 enum class PreviewTransparency {
+  Auto,              ///< DepthLayers where there is no GPU and no hair is wide, else Stochastic
   Opaque,            ///< as if at least a pixel wide: the depth buffer alone
   Stochastic,        ///< a random part of the samples, right on average
   AlphaToCoverage,   ///< the driver's choice of samples
   WeightedAverage,   ///< mean colour by coverage, exact transmittance: no order at all
   OccupancyOrdered,  ///< weighted by what an occupancy map of the camera says is in front (Sintorn &
                      ///< Assarsson)
+  DepthLayers,       ///< optical depth and mean colour in layers behind a pixel's first hair; by compute alone:
+                     ///< no noise, and a fraction of the others' cost where there is no GPU
   ExactLists,        ///< all fragments of a pixel, sorted: the truth, and as much memory as that takes
 };
 
@@ -76,7 +79,7 @@ struct PreviewOptions {
   PreviewShading shading = PreviewShading::Studio;
   FibreParameters fibre;       ///< of all shadings but Studio
   bool useAbsorption = false;  ///< take fibre.absorption; else hairColor is the colour that dense hair takes
-  PreviewTransparency transparency = PreviewTransparency::Stochastic;
+  PreviewTransparency transparency = PreviewTransparency::Auto;
   bool leaveOut = true;  ///< skip what cannot be seen in this scene; said in the picture's stages and notes
   bool shadows = true;
   VisibilityOptions visibility = previewVisibility();  ///< of the key light; `opaque` is the scene's head
