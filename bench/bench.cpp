@@ -22,6 +22,7 @@ constexpr Entry kBenches[] = {
     {"scattering", benchScattering},
 #ifdef COIF_WITH_PREVIEW
     {"gpu", benchGpu},
+    {"picture", benchPicture},
 #endif
     {"dynamics", benchDynamics},
 };

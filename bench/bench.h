@@ -125,6 +125,7 @@ BenchReport benchStrands(const BenchOptions& options);      ///< bench_strands.c
 BenchReport benchVisibility(const BenchOptions& options);   ///< bench_visibility.cpp
 BenchReport benchScattering(const BenchOptions& options);   ///< bench_scattering.cpp
 BenchReport benchGpu(const BenchOptions& options);          ///< bench_gpu.cpp; not without COIF_WITH_PREVIEW
+BenchReport benchPicture(const BenchOptions& options);      ///< bench_picture.cpp; not without COIF_WITH_PREVIEW
 BenchReport benchDynamics(const BenchOptions& options);     ///< bench_dynamics.cpp
 
 }  // namespace coif

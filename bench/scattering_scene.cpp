@@ -52,7 +52,7 @@ ScatteringScene clusterScene(int side, double aroundDeg, double alongDeg, std::u
   return scene;
 }
 
-ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options) {
+ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options, std::uint32_t strandPoints) {
   ScatteringScene scene;
   scene.name = "bob";
   scene.head = makeExampleHead();
@@ -64,7 +64,7 @@ ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options) {
   const Hairstyle style = require(modelHairstyle("bob", cage, head, options.context));
   GrowOptions growing;
   growing.count = hairs;
-  growing.points = 24;
+  growing.points = strandPoints;
   growing.seed = options.seed;
   growing.head = &head;
   // 0.08 mm at 100 000 hairs on a head 23 cm high.

@@ -28,7 +28,7 @@ struct ScatteringScene {
 ScatteringScene clusterScene(int side, double aroundDeg, double alongDeg, std::uint64_t seed);
 /// The ready bob on the example head, key and rim lights. Fewer than 100 000 hairs are wider, so that as much
 /// light is blocked.
-ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options);
+ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options, std::uint32_t strandPoints = 24);
 
 /// A single distant light in the scene's frame.
 Lights oneLight(const Vec3& toLight, double irradiance);

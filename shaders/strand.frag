@@ -25,12 +25,11 @@ void main() {
 
 #ifdef EYE_COVERAGE
 layout(location = 0) out vec4 color;
-// A whole number of samples, rounded at random: a hair of a twentieth of a pixel would otherwise never be seen. A
-// quarter more than the number, so that a driver that rounds and one that cuts off agree.
+// Dithered to all or nothing. Which samples a driver takes for an alpha between is its own affair, and it is the same ones
+// for every hair, so that hairs would hide each other; of 0 and 1 there is no choice, and the mean is right.
 void main() {
-  float n = float(gl_NumSamples);
   float u = float(fragmentBits(seed, uint(viewport.z)) >> 8u) * (1.0 / 16777216.0);
-  color = vec4(shaded, (min(floor(alphaHere() * n + u), n) + 0.25) / n);
+  color = vec4(shaded, u < alphaHere() ? 1 : 0);
 }
 #endif
 

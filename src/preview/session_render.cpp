@@ -74,7 +74,11 @@ DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
   DetailOptions detail;
   detail.lod = options.lod;
   detail.fraction = options.strandFraction;
-  detail.lines = options.lod && options.lines;
+  // Mesa draws but half of a multi-sampled line that lies along an axis, or nearly so.
+  const PreviewTransparency method = options.transparency;
+  const bool samples = method == PreviewTransparency::Opaque || method == PreviewTransparency::Stochastic ||
+                       method == PreviewTransparency::AlphaToCoverage;
+  detail.lines = options.lod && options.lines && !(samples && device.gl->software());
   detail.batchPoints = device.mostBatchPoints;
   detail.maxSegments = options.maxSegments > 0 ? options.maxSegments
                        : device.gl->software() ? kSoftwareSegments
