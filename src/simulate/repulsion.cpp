@@ -77,23 +77,36 @@ void RepulsionField::linearise(const NodeView& start, std::size_t node, double t
   local.start = position;
   const SplatStencil stencil(frame_.cellsFromWorld(position));
   const double volume = frame_.cell * frame_.cell * frame_.cell, mass = masses_[node];
+  const double push = options_.stiffness * mass, firm = push / volume, perCell = 1 / frame_.cell;
   double density = 0;
   Vec3 momentum = Vec3::Zero();
-  stencil.forEach([&](long i, long j, long k, double w, const Vec3& perCell) {
-    const std::size_t index = frame_.index(i, j, k);
-    const float* cell = &grid_[index * kChannels];
-    density += w * cell[0];
-    momentum += w * Vec3(cell[1], cell[2], cell[3]);
-    const double over = cell[0] - options_.restDensity;
-    if (slopes_.empty() || !(over > 0)) return;
-    const Vec3 slope = perCell / frame_.cell;
-    local.force -= options_.stiffness * mass * over * slope;
-    const double steep = slope.norm();
-    // (Σ_j a_j)(Σ_j a_j)ᵀ ⪯ Σ_j (S / |a_j|) a_j a_jᵀ with S = Σ |a_j|: what makes K a majorant.
-    if (steep > 0)
-      local.stiffness +=
-          options_.stiffness / volume * slopes_[index] * mass / steep * slope * slope.transpose();
-  });
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double y = stencil.weight[1][j], z = stencil.weight[2][k], yz0 = y * z;
+      const double sy = stencil.slope[1][j] * z * perCell, sz = y * stencil.slope[2][k] * perCell;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t index =
+            frame_.index(stencil.first[0] + long(i), stencil.first[1] + long(j), stencil.first[2] + long(k));
+        const float* cell = &grid_[index * kChannels];
+        const double x = stencil.weight[0][i], w = x * yz0;
+        density += w * double(cell[0]);
+        momentum += w * Vec3(cell[1], cell[2], cell[3]);
+        const double over = double(cell[0]) - options_.restDensity;
+        if (slopes_.empty() || !(over > 0)) continue;
+        const Vec3 slope(stencil.slope[0][i] * yz0 * perCell, x * sy, x * sz);
+        local.force -= (push * over) * slope;
+        // (Σ a_j)(Σ a_j)ᵀ ⪯ Σ (S / s_j) a_j a_jᵀ with S = Σ s_j, for any s_j > 0 (Cauchy–Schwarz): what makes
+        // K a majorant. Here s_j is the sum of a_j's components.
+        const double steep = std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]);
+        if (!(steep > 0)) continue;
+        const Vec3 scaled = (firm * double(slopes_[index]) / steep) * slope;
+        xx += scaled[0] * slope[0], xy += scaled[0] * slope[1], xz += scaled[0] * slope[2];
+        yy += scaled[1] * slope[1], yz += scaled[1] * slope[2], zz += scaled[2] * slope[2];
+      }
+    }
+  }
+  local.stiffness << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   if (density > 0) local.meanVelocity = momentum / density;
   local.carried = position + timeStep * local.meanVelocity;
   local.friction = mass * options_.friction;

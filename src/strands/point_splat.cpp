@@ -1,5 +1,6 @@
 #include "coif/strands/point_splat.h"
 
+#include "coif/base/check.h"
 #include "coif/base/parallel.h"
 
 namespace coif {
@@ -63,21 +64,37 @@ void PointSplatter::gather(const GridFrame& frame, std::span<const Vec3> points,
   });
 }
 
-void PointSplatter::splat(const GridFrame& frame, std::span<const Vec3> points,
-                          std::span<const double> values, std::size_t channels, std::vector<float>& grid,
-                          const Context& context) {
+/// kChannels values a point.
+template <std::size_t kChannels>
+void PointSplatter::splatChannels(const GridFrame& frame, std::span<const Vec3> points,
+                                  std::span<const double> values, std::vector<float>& grid,
+                                  const Context& context) {
   const auto n = std::size_t(frame.size());
-  grid.assign(n * n * n * channels, 0.0f);
+  grid.assign(n * n * n * kChannels, 0.0f);
   gather(frame, points, context, [&](std::uint32_t p, const SplatStencil& stencil, std::size_t k, long slab) {
+    float value[kChannels];
+    for (std::size_t c = 0; c < kChannels; ++c)
+      value[c] = float(stencil.weight[2][k] * values[p * kChannels + c]);
     for (std::size_t j = 0; j < 3; ++j) {
       for (std::size_t i = 0; i < 3; ++i) {
-        const double w = stencil.weight[0][i] * stencil.weight[1][j] * stencil.weight[2][k];
+        const auto w = float(stencil.weight[0][i] * stencil.weight[1][j]);
         float* cell =
-            &grid[channels * frame.index(stencil.first[0] + long(i), stencil.first[1] + long(j), slab)];
-        for (std::size_t c = 0; c < channels; ++c) cell[c] += float(w * values[p * channels + c]);
+            &grid[kChannels * frame.index(stencil.first[0] + long(i), stencil.first[1] + long(j), slab)];
+        for (std::size_t c = 0; c < kChannels; ++c) cell[c] += w * value[c];
       }
     }
   });
+}
+
+void PointSplatter::splat(const GridFrame& frame, std::span<const Vec3> points,
+                          std::span<const double> values, std::size_t channels, std::vector<float>& grid,
+                          const Context& context) {
+  COIF_CHECK(channels == 1 || channels == 4, "points are spread one or four values at a time");
+  if (channels == 1) {
+    splatChannels<1>(frame, points, values, grid, context);
+  } else {
+    splatChannels<4>(frame, points, values, grid, context);
+  }
 }
 
 void PointSplatter::splatSlopes(const GridFrame& frame, std::span<const Vec3> points,
@@ -86,13 +103,13 @@ void PointSplatter::splatSlopes(const GridFrame& frame, std::span<const Vec3> po
   const auto n = std::size_t(frame.size());
   grid.assign(n * n * n, 0.0f);
   gather(frame, points, context, [&](std::uint32_t p, const SplatStencil& stencil, std::size_t k, long slab) {
+    const double value = values[p] / frame.cell, z = stencil.weight[2][k], sz = std::abs(stencil.slope[2][k]);
     for (std::size_t j = 0; j < 3; ++j) {
+      const double y = stencil.weight[1][j], sy = std::abs(stencil.slope[1][j]);
       for (std::size_t i = 0; i < 3; ++i) {
-        const double x = stencil.weight[0][i], y = stencil.weight[1][j], z = stencil.weight[2][k];
-        const Vec3 gradient(stencil.slope[0][i] * y * z, x * stencil.slope[1][j] * z,
-                            x * y * stencil.slope[2][k]);
+        const double x = stencil.weight[0][i], sx = std::abs(stencil.slope[0][i]);
         grid[frame.index(stencil.first[0] + long(i), stencil.first[1] + long(j), slab)] +=
-            float(values[p] * gradient.norm() / frame.cell);
+            float(value * (sx * y * z + x * sy * z + x * y * sz));
       }
     }
   });

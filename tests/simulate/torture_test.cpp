@@ -6,6 +6,7 @@
 #include <new>
 
 #include "bench/dynamics_grid.h"
+#include "bench/dynamics_head.h"
 #include "simulate/chain_samples.h"
 
 namespace {
@@ -193,6 +194,25 @@ TEST(Determinism, SameBytesForAnyNumberOfThreadsAndAfterAResume) {
       EXPECT_TRUE(sameBytes(end.positions, ends[0].positions)) << name(method);
       EXPECT_TRUE(sameBytes(end.velocities, ends[0].velocities)) << name(method);
     }
+  }
+}
+
+// Everything that acts at once: head, density, fluid.
+TEST(Determinism, SameBytesForAnyNumberOfThreadsWithHeadDensityAndFluid) {
+  std::vector<ChainState> ends;
+  for (const int threads : {1, 2, 5}) {
+    HeadProblem::Options options;
+    options.trees = 300;
+    options.fluid = true;
+    options.threads = threads;
+    HeadProblem problem(options);
+    for (int k = 0; k < 12; ++k) EXPECT_EQ(problem.step(1. / 60).solved, 300u);
+    EXPECT_GT(problem.collisions().nearCount(), 0u);
+    ends.push_back(problem.state());
+  }
+  for (const ChainState& end : ends) {
+    EXPECT_TRUE(sameBytes(end.positions, ends[0].positions));
+    EXPECT_TRUE(sameBytes(end.velocities, ends[0].velocities));
   }
 }
 

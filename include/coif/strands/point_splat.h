@@ -48,15 +48,15 @@ struct SplatStencil {
 /// finite gives a unit frame.
 GridFrame frameAround(const Vec3& lo, const Vec3& hi, double cell, int maxLog2Size = 7);
 
-/// Adds value_c(p) · W(p, cell) over all points to channel c of every cell: `channels` values a point,
-/// row-major, and n³ × channels floats a grid, channel fastest. Points that are not finite are left out.
-/// Deterministic for any number of threads: slabs of cells gather in point order. Cost: 81 multiply–adds a
-/// point and channel; keeps its buckets between calls.
+/// Adds value_c(p) · W(p, cell) over all points to channel c of every cell: `channels` (1 or 4) values a
+/// point, row-major, and n³ × channels floats a grid, channel fastest. Points that are not finite are left
+/// out. Deterministic for any number of threads: slabs of cells gather in point order. Cost: 81 multiply–adds
+/// a point and channel; keeps its buckets between calls.
 class PointSplatter {
  public:
   void splat(const GridFrame& frame, std::span<const Vec3> points, std::span<const double> values,
              std::size_t channels, std::vector<float>& grid, const Context& context = {});
-  /// The same with value_0 · |∇W| (per world length) of each point: one channel.
+  /// The same with value · (|∂W/∂x| + |∂W/∂y| + |∂W/∂z|), per world length: one channel.
   void splatSlopes(const GridFrame& frame, std::span<const Vec3> points, std::span<const double> values,
                    std::vector<float>& grid, const Context& context = {});
 
@@ -64,6 +64,9 @@ class PointSplatter {
   void bucket(const GridFrame& frame, std::span<const Vec3> points);
   template <class Add>
   void gather(const GridFrame& frame, std::span<const Vec3> points, const Context& context, Add&& add);
+  template <std::size_t kChannels>
+  void splatChannels(const GridFrame& frame, std::span<const Vec3> points, std::span<const double> values,
+                     std::vector<float>& grid, const Context& context);
   std::vector<std::uint32_t> slabOffsets_, order_;
 };
 
