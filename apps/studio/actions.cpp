@@ -52,6 +52,14 @@ std::vector<Action> Studio::fileActions() {
        noDocument},
       {"screenshot", "Screenshot ...", "File", "F12", "Writes a picture of the window.",
        ask(PathUse::Screenshot)},
+      {"write_turntable",
+       "Turntable ...",
+       "File",
+       "Ctrl+F12",
+       "Writes pictures from all around.",
+       ask(PathUse::Turntable),
+       {},
+       noDocument},
       {"quit", "Quit", "File", "Ctrl+Q", "Ends the studio.", [this] { quit_ = mayClose(); }},
   };
 }

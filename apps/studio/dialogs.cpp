@@ -47,6 +47,7 @@ void Studio::askPath(PathUse use) {
   pathText_ = (use == PathUse::SaveAs       ? folder / (stem + ".coif")
                : use == PathUse::Export     ? folder / (stem + ".usdc")
                : use == PathUse::Screenshot ? folder / (stem + ".png")
+               : use == PathUse::Turntable  ? folder / (stem + "-turn.png")
                                             : folder / "")
                   .string();
   ImGui::OpenPopup("path");
@@ -57,6 +58,7 @@ void Studio::usePath(const fs::path& path) {
   if (use == PathUse::Open) return openPath(path, options_.style);
   if (use == PathUse::SaveAs) return saveTo(path);
   if (use == PathUse::Export) return exportTo(path);
+  if (use == PathUse::Turntable) return beginTurntable(path);
   const auto png = encodePng(window_.screenshot());
   if (!png.ok()) return say(png.error().text(), true);
   auto file = SafeFile::create(path);
@@ -69,7 +71,8 @@ void Studio::usePath(const fs::path& path) {
 void Studio::drawPathDialog() {
   if (pathUse_ == PathUse::None) return;
   const char* titles[] = {"", "Open a head or a .coif document", "Save the document as",
-                          "Export strands (.usdc, .usda, .glb, .hair)", "Write a picture of the window"};
+                          "Export strands (.usdc, .usda, .glb, .hair)", "Write a picture of the window",
+                          "Write a turntable as numbered pictures"};
   const std::string title = std::string(titles[int(pathUse_)]) + "###path";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
   centred(560 * window_.scale());

@@ -6,13 +6,14 @@
 #include "gizmo.h"
 #include "mesh_painter.h"
 #include "operation_tool.h"
+#include "scene_painter.h"
 #include "studio.h"
 #include "transform_tool.h"
 
 namespace coif::studio {
 namespace {
 
-constexpr double kNoteSeconds = 4;
+constexpr double kTurnDegPerSecond = 36, kLongestTurnStep = 0.25;
 
 std::optional<HandTool> transformOf(const std::string& command) {
   if (command == "translate") return HandTool::Move;
@@ -154,6 +155,13 @@ bool Studio::takeTools() {
     followBrush();
     return brush_.tookKeys();
   }
+  if (const char* look = view_.settings.axes ? axisAt(view_, window_.scale()) : nullptr;
+      look != nullptr && ImGui::IsMouseClicked(0)) {
+    for (const MenuEntry& entry : entries()) {
+      if (entry.name == look) carryOut(entry);
+    }
+    return false;
+  }
   if (const auto middle = selectionMiddle(); middle && transforms(tools_.hand) && view_.hovered()) {
     const auto handle = Gizmo(tools_.hand, *middle, view_, window_.scale()).at(view_.mouse());
     if (handle && ImGui::IsMouseClicked(0)) {
@@ -167,6 +175,34 @@ bool Studio::takeTools() {
       tools_.hand == HandTool::Paint ? select_.paint(view_, mesh, tools_) : select_.update(view_, mesh);
   for (const Wish& wish : wishes) run(wish.command, wish.arguments);
   return false;
+}
+
+bool Studio::headInPicture() const {
+  return view_.settings.headStyle == HeadStyle::Shaded || !document_->head || !canPaintHead(*document_->head);
+}
+
+bool Studio::turnTable() {
+  const double before = std::exchange(turnedAt_, secondsNow());
+  if (!view_.settings.turntable) return false;
+  const double passed = std::min(turnedAt_ - before, kLongestTurnStep);
+  view_.camera = orbit(view_.camera, view_.upAxis, kTurnDegPerSecond * passed, 0);
+  window_.wakeWithin(1.0 / 60);
+  return true;
+}
+
+void Studio::drawUnderView() {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 from = view_.origin(), size = view_.size();
+  paintBackdrop(view_, settings_.lightTheme);
+  list.PushClipRect(from, {from.x + size.x, from.y + size.y});
+  const Surface* head = document_->head.get();
+  if (view_.settings.grid) {
+    std::vector<Vec3> points = head != nullptr ? head->mesh().positions : std::vector<Vec3>();
+    for (const HairVertex& vertex : document_->editor.mesh().vertices()) points.push_back(vertex.position);
+    if (!points.empty()) paintGrid(view_, bounds(points), 10 * tools_.snap.step);
+  }
+  if (view_.settings.showHead && !headInPicture()) paintHead(view_, *head, view_.settings.headStyle);
+  list.PopClipRect();
 }
 
 void Studio::drawOverView() {
@@ -196,6 +232,7 @@ void Studio::drawOverView() {
   if (free && !hot && tools_.hand != HandTool::Brush && tools_.hand != HandTool::Paint)
     painter.paintHover(under(view_, now));
   if (tool_) tool_->draw(view_);
+  if (view_.settings.axes) paintAxes(view_, window_.scale());
   list.PopClipRect();
   select_.draw(view_, tools_);
   if (tools_.hand == HandTool::Brush && !tool_) brush_.draw(view_, tools_.brush);

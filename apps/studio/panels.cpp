@@ -114,18 +114,6 @@ void Studio::drawStrandPanel() {
   if (changed) run("set_strands", values);
 }
 
-void Studio::drawLookPanel() {
-  if (!ImGui::CollapsingHeader("Hair colour")) return;
-  const LookSettings& look = document_->editor.state().look;
-  Vec3f color = look.hairColor;
-  ImGui::ColorEdit3("colour", color.data(), ImGuiColorEditFlags_Float);
-  if (ImGui::IsItemDeactivatedAfterEdit() || (!ImGui::IsItemActive() && color != look.hairColor)) {
-    run("set_look", {{"color", Vec3(color.cast<double>())},
-                     {"azimuth", look.azimuthDeg},
-                     {"elevation", look.elevationDeg}});
-  }
-}
-
 void Studio::drawHistoryPanel() {
   if (!ImGui::CollapsingHeader("History")) return;
   const std::vector<std::string> labels = document_->editor.stepLabels();

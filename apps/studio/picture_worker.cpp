@@ -138,6 +138,7 @@ Status PictureWorker::show(const PictureRequest& request, PictureAnswer& out) {
     if (hair.error().code == ErrorCode::Cancelled) return hair;
   }
   session_->setCamera(request.camera);
+  session_->setLights(request.lights);
   COIF_ASSIGN(Picture picture, session_->render(request.options, context));
   out.image = std::move(picture.image);
   out.strandsDrawn = picture.strandsDrawn;

@@ -19,6 +19,7 @@ struct PictureRequest {
   std::shared_ptr<const Scene> scene;  ///< with its internal vertices placed
   std::uint64_t revision = 0;          ///< of the scene: the same one need not be looked at again
   Camera camera;
+  Lights lights;
   PreviewOptions options;
   bool strands = true, head = true;
   std::shared_ptr<const Surface> surface;  ///< the head; null: none

@@ -1,7 +1,6 @@
 #include "scene_painter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace coif::studio {
@@ -32,6 +31,9 @@ void paintBackdrop(const Viewport& view, bool lightTheme) {
   const ImU32 top = lightTheme ? IM_COL32(196, 200, 206, 255) : IM_COL32(88, 91, 97, 255),
               bottom = lightTheme ? IM_COL32(140, 144, 150, 255) : IM_COL32(46, 47, 50, 255);
   list().AddRectFilledMultiColor(from, to, top, top, bottom, bottom);
+  if (!view.settings.beside) return;
+  const ImVec2 beside = view.besideOrigin();
+  list().AddRectFilledMultiColor(beside, {beside.x + view.size().x, to.y}, top, top, bottom, bottom);
 }
 
 void paintGrid(const Viewport& view, const Box& model, double step) {
@@ -57,9 +59,12 @@ void paintGrid(const Viewport& view, const Box& model, double step) {
     line3(view, point(u0, x), point(u1, x), color(x, IM_COL32(235, 90, 95, 120)), 1);
 }
 
-bool paintHead(const Viewport& view, const Surface& head, HeadStyle style) {
+bool canPaintHead(const Surface& head) {
+  return head.mesh().faceCount() <= kMostHeadFaces;
+}
+
+void paintHead(const Viewport& view, const Surface& head, HeadStyle style) {
   const PolygonMesh& mesh = head.mesh();
-  if (mesh.faceCount() > kMostHeadFaces) return false;
   std::vector<ScreenPoint> points;
   points.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) points.push_back(view.project(p));
@@ -88,57 +93,82 @@ bool paintHead(const Viewport& view, const Surface& head, HeadStyle style) {
     const int alpha = int(30 + 90 * (1 - std::clamp(facing, 0.0, 1.0)));
     list().AddConvexPolyFilled(outline.data(), int(outline.size()), IM_COL32(214, 178, 150, alpha));
   }
-  return true;
 }
 
-std::optional<AxisView> paintAxes(const Viewport& view, float scale) {
+namespace {
+
+struct AxisBall {
+  double depth;
+  ImVec2 at;
+  float radius;
+  int axis;
+  bool positive;
+};
+
+struct AxisCross {
+  ImVec2 middle;
+  std::vector<AxisBall> balls;  // far ones first
+};
+
+AxisCross axisCross(const Viewport& view, float scale) {
   const float arm = 30 * scale;
-  const ImVec2 middle{view.origin().x + view.size().x - 46 * scale, view.origin().y + 48 * scale};
-  if (view.size().x < 200 * scale || view.size().y < 160 * scale) return std::nullopt;
-  struct Ball {
-    double depth;
-    ImVec2 at;
-    int axis;
-    bool positive;
-  };
-  std::array<Ball, 6> balls;
+  AxisCross out{{view.origin().x + view.size().x - 46 * scale, view.origin().y + 48 * scale}, {}};
+  if (view.size().x < 200 * scale || view.size().y < 160 * scale) return out;  // the view comes first
   for (int i = 0; i < 6; ++i) {
-    const Vec3 d = (i % 2 == 0 ? 1.0 : -1.0) * Vec3::Unit(i / 2);
-    balls[std::size_t(i)] = {
-        d.dot(view.forward()),
-        {middle.x + arm * float(d.dot(view.right())), middle.y - arm * float(d.dot(view.up()))},
-        i / 2,
-        i % 2 == 0};
+    const bool positive = i % 2 == 0;
+    const Vec3 d = (positive ? 1.0 : -1.0) * Vec3::Unit(i / 2);
+    const ImVec2 at{out.middle.x + arm * float(d.dot(view.right())),
+                    out.middle.y - arm * float(d.dot(view.up()))};
+    out.balls.push_back({d.dot(view.forward()), at, (positive ? 8.5f : 6.0f) * scale, i / 2, positive});
   }
-  std::ranges::sort(balls, std::greater(), &Ball::depth);
-  // Looking along −x shows the model's right, as the View menu names it; y and z change places with the up
+  std::ranges::sort(out.balls, std::greater(), &AxisBall::depth);
+  return out;
+}
+
+const AxisBall* ballAt(const Viewport& view, const AxisCross& cross) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const AxisBall* hot = nullptr;
+  for (const AxisBall& ball : cross.balls) {
+    if (view.hovered() && std::hypot(mouse.x - ball.at.x, mouse.y - ball.at.y) <= ball.radius) hot = &ball;
+  }
+  return hot;
+}
+
+}  // namespace
+
+const char* axisAt(const Viewport& view, float scale) {
+  const AxisCross cross = axisCross(view, scale);
+  const AxisBall* ball = ballAt(view, cross);
+  if (ball == nullptr) return nullptr;
+  // Looking along -x shows the model's right, as the View menu names it; y and z change places with the up
   // axis.
   const bool yUp = view.upAxis == UpAxis::Y;
   const char* names[3][2] = {{"view_right", "view_left"},
                              {yUp ? "view_top" : "view_back", yUp ? "view_bottom" : "view_front"},
                              {yUp ? "view_front" : "view_top", yUp ? "view_back" : "view_bottom"}};
+  return names[ball->axis][ball->positive ? 0 : 1];
+}
+
+void paintAxes(const Viewport& view, float scale) {
+  const AxisCross cross = axisCross(view, scale);
+  const AxisBall* hot = ballAt(view, cross);
   constexpr ImU32 kColors[] = {IM_COL32(235, 78, 84, 255), IM_COL32(120, 200, 70, 255),
                                IM_COL32(74, 140, 245, 255)};
-  std::optional<AxisView> clicked;
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  for (const Ball& ball : balls) {
-    const float radius = (ball.positive ? 8.5f : 6.0f) * scale;
-    const bool hot = view.hovered() && std::hypot(mouse.x - ball.at.x, mouse.y - ball.at.y) <= radius;
-    const ImU32 color = kColors[ball.axis];
-    if (ball.positive) list().AddLine(middle, ball.at, color, 2 * scale);
-    if (ball.positive) {
-      list().AddCircleFilled(ball.at, radius, hot ? IM_COL32_WHITE : color);
-      const char letter[2] = {"XYZ"[ball.axis], 0};
-      const ImVec2 size = ImGui::CalcTextSize(letter);
-      list().AddText({ball.at.x - 0.5f * size.x, ball.at.y - 0.5f * size.y}, IM_COL32(20, 20, 20, 255),
-                     letter);
-    } else {
-      list().AddCircleFilled(ball.at, radius, hot ? IM_COL32_WHITE : (color & 0x00ffffff) | 0x50000000);
-      list().AddCircle(ball.at, radius, color, 0, 1.2f * scale);
+  for (const AxisBall& ball : cross.balls) {
+    const ImU32 color = kColors[ball.axis], faint = (color & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 80);
+    if (ball.positive) list().AddLine(cross.middle, ball.at, color, 2 * scale);
+    list().AddCircleFilled(ball.at, ball.radius,
+                           &ball == hot    ? IM_COL32_WHITE
+                           : ball.positive ? color
+                                           : faint);
+    if (!ball.positive) {
+      list().AddCircle(ball.at, ball.radius, color, 0, 1.2f * scale);
+      continue;
     }
-    if (hot && ImGui::IsMouseClicked(0)) clicked = AxisView{names[ball.axis][ball.positive ? 0 : 1]};
+    const char letter[2] = {"XYZ"[ball.axis], 0};
+    const ImVec2 size = ImGui::CalcTextSize(letter);
+    list().AddText({ball.at.x - 0.5f * size.x, ball.at.y - 0.5f * size.y}, IM_COL32(20, 20, 20, 255), letter);
   }
-  return clicked;
 }
 
 }  // namespace coif::studio

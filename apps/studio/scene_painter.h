@@ -10,13 +10,14 @@ namespace coif::studio {
 void paintBackdrop(const Viewport& view, bool lightTheme);
 void paintGrid(const Viewport& view, const Box& model, double step);
 /// The head where the picture leaves it out: lines of the faces that look at the eye, or these faces as
-/// glass. False: it has too many faces for that.
-bool paintHead(const Viewport& view, const Surface& head, HeadStyle style);
+/// glass.
+void paintHead(const Viewport& view, const Surface& head, HeadStyle style);
+/// Whether it has few enough faces for that.
+bool canPaintHead(const Surface& head);
 
-/// The axes in the view's upper right corner. A click on one looks along it.
-struct AxisView {
-  const char* action;  ///< name of the studio's action
-};
-std::optional<AxisView> paintAxes(const Viewport& view, float scale);
+/// The axes in the view's upper right corner; the one under the mouse is bright.
+void paintAxes(const Viewport& view, float scale);
+/// The action that looks along the axis under the mouse; null where there is none.
+const char* axisAt(const Viewport& view, float scale);
 
 }  // namespace coif::studio

@@ -39,6 +39,7 @@ const std::map<std::string, std::string>& mayaKeys() {
       {"rotate", "Shift+T"},
       {"scale", "Shift+Y"},
       {"soft_selection", "B"},
+      {"shade_dual", "Ctrl+F8"},
   };
   return keys;
 }

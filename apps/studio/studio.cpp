@@ -138,16 +138,54 @@ bool Studio::mayClose() {
   return true;
 }
 
+PictureRequest Studio::pictureRequest(bool fine) const {
+  const Editor& editor = document_->editor;
+  const ViewSettings& s = view_.settings;
+  const LookSettings look = shownLook();
+  PictureRequest request;
+  auto scene = std::make_shared<Scene>(editor.scene());
+  if (attempt_) scene->hairMesh = *attempt_;
+  request.revision = attempt_ ? hashCombine(editor.revision(), attemptNumber_) : editor.revision();
+  request.scene = std::move(scene);
+  request.camera = view_.camera;
+  request.surface = document_->head;
+  request.strands = s.showStrands;
+  request.head = s.showHead && headInPicture();
+  request.lights = lightsOf(look.light, editor.scene().upAxis);
+  PreviewOptions& options = request.options;
+  const int reduce = fine ? 1 : 2;  // a draft first, the fine picture once all is at rest
+  options.width = std::max(view_.width() / reduce, 8);
+  options.height = std::max(view_.height() / reduce, 8);
+  options.subframes = fine ? 3 : 1;
+  options.maxSegments = fine ? 0 : kDraftSegments;
+  options.hairColor = look.hairColor;
+  options.fibre = fibreOf(look);
+  options.shading = s.shading;
+  options.shadows = s.shadows;
+  options.transparentBackground = true;  // the studio's own backdrop and grid lie behind
+  return request;
+}
+
 void Studio::askForPicture(bool moving) {
-  if (!document_ || view_.width() < 8 || view_.height() < 8) return;
+  if (!document_ || turntable_ || view_.width() < 8 || view_.height() < 8) return;
   const Editor& editor = document_->editor;
   std::uint64_t key =
       hashCombine(editor.revision(), std::uint64_t(view_.width()) * 65536 + std::uint64_t(view_.height()));
-  key = hashCombine(key, (view_.settings.showStrands ? 1u : 0u) + (view_.settings.showHead ? 2u : 0u));
+  const ViewSettings& s = view_.settings;
+  const bool head = s.showHead && headInPicture();
+  key = hashCombine(
+      key, (s.showStrands ? 1u : 0u) + (head ? 2u : 0u) + (s.shadows ? 4u : 0u) + 8u * unsigned(s.shading));
   for (const Vec3& v : {view_.camera.eye, view_.camera.target, Vec3(view_.camera.fovDeg, 0, 0)}) {
     for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
   }
   if (attempt_) key = hashCombine(key, attemptNumber_);
+  const LookSettings look = shownLook();
+  for (double x : {double(look.hairColor.x()), double(look.hairColor.y()), double(look.hairColor.z()),
+                   look.longitudinalRoughness, look.azimuthalRoughness, look.light.azimuthDeg,
+                   look.light.elevationDeg, look.light.key, look.light.fill, look.light.rim, look.light.sky,
+                   look.light.followCamera ? 1.0 : 0.0}) {
+    key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
+  }
   const bool changed = key != askedKey_;
   if (changed) askedKey_ = key, lastChange_ = secondsNow(), fine_ = false;
   const bool rested =
@@ -155,22 +193,7 @@ void Studio::askForPicture(bool moving) {
   if (!fine_ && !rested) window_.wakeWithin(kFineAfterSeconds);
   if (!changed && !rested) return;
 
-  PictureRequest request;
-  auto scene = std::make_shared<Scene>(editor.scene());
-  if (attempt_) scene->hairMesh = *attempt_;
-  request.revision = attempt_ ? key : editor.revision();
-  request.scene = std::move(scene);
-  request.camera = view_.camera;
-  request.surface = document_->head;
-  request.strands = view_.settings.showStrands;
-  request.head = view_.settings.showHead;
-  PreviewOptions& options = request.options;
-  const int reduce = rested ? 1 : 2;  // a draft first, the fine picture once all is at rest
-  options.width = std::max(view_.width() / reduce, 8);
-  options.height = std::max(view_.height() / reduce, 8);
-  options.subframes = rested ? 3 : 1;
-  options.maxSegments = rested ? 0 : kDraftSegments;
-  options.hairColor = editor.state().look.hairColor;
+  PictureRequest request = pictureRequest(rested);
   if (rested) fine_ = true;
   pictures_->ask(std::move(request));
 }
@@ -179,6 +202,7 @@ void Studio::takePictures() {
   auto answer = pictures_->take();
   if (!answer) return;
   const Trace::Span span(trace_, "upload picture");
+  if (turntable_) takeTurntableFrame(*answer);
   if (!answer->problem.empty()) say(answer->problem, true);
   if (answer->image.width > 0) window_.canvas().upload(answer->image);
   stages_ = std::move(answer->stages);
@@ -188,6 +212,7 @@ void Studio::takePictures() {
 
 void Studio::takeKeys() {
   if (ImGui::GetIO().WantTextInput || window_.keys().none()) return;
+  if (turntable_ && window_.keys().pressed("Escape")) turntable_.reset(), say("the turntable was stopped");
   for (const MenuEntry& entry : entries()) {
     if (!window_.keys().pressed(entry.key)) continue;
     carryOut(entry);
@@ -205,7 +230,7 @@ bool Studio::frame() {
   takePictures();
   drawMenus();
   drawPanels();
-  const bool moving = view_.navigate();
+  const bool moving = view_.navigate() | turnTable();
   if (document_) {
     const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");
@@ -217,6 +242,7 @@ bool Studio::frame() {
     if (!takeTools()) takeKeys();
     if (document_) {  // a key may have opened another
       project();
+      drawUnderView();
       view_.drawPicture(window_.canvas().texture());
       drawOverView();
     }

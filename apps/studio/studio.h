@@ -62,8 +62,11 @@ class Studio {
   void followBrush();
   bool takeTools();  ///< true: this frame's keys were the tool's
   std::optional<Vec3> selectionMiddle() const;
+  void drawUnderView();
   void drawOverView();
+  bool turnTable();  ///< true while the model turns by itself
   void drawNote();
+  bool headInPicture() const;  ///< else the studio draws it itself, as lines or glass
 
   // Menus, palette and keys (actions.cpp, view_actions.cpp, menus.cpp).
   std::vector<Action> makeActions();
@@ -83,6 +86,17 @@ class Studio {
   void takePictures();
   void askForPicture(bool moving);
   void autosave();
+  PictureRequest pictureRequest(bool fine) const;
+
+  // A turntable as pictures (turntable.cpp).
+  struct TurntableRecord {
+    std::filesystem::path path;
+    int frame = 0;  // the next one
+    Camera start;
+  };
+  void beginTurntable(const std::filesystem::path& path);
+  void askTurntableFrame();
+  void takeTurntableFrame(const PictureAnswer& answer);
 
   // What is drawn (menus.cpp, panels.cpp, dialogs.cpp).
   void drawMenus();
@@ -94,7 +108,10 @@ class Studio {
   void drawHandSettings();
   void drawSelectionPanel();
   void drawStrandPanel();
-  void drawLookPanel();
+  void drawLookPanel();  // look_panel.cpp, with the next two
+  /// Runs a panel's command once its widgets are let go; until then only the picture shows it.
+  void settle(const std::string& command, const CommandArguments& arguments, bool changed);
+  LookSettings shownLook() const;
   void drawAdjustPanel();
   void drawHistoryPanel();
   void drawStagePanel();
@@ -110,7 +127,7 @@ class Studio {
   void drawTour();
   bool drawArgument(const CommandArgument& argument, CommandArguments& values) const;
 
-  enum class PathUse { None, Open, SaveAs, Export, Screenshot };
+  enum class PathUse { None, Open, SaveAs, Export, Screenshot, Turntable };
   void askPath(PathUse use);
   void usePath(const std::filesystem::path& path);
 
@@ -133,6 +150,12 @@ class Studio {
   std::string attemptLine_, refusal_;  // of the tool that runs
   std::string note_;                   // why something was refused, beside the mouse
   double noteUntil_ = 0;
+  double turnedAt_ = 0;
+  std::optional<TurntableRecord> turntable_;
+
+  std::string pendingCommand_;  // what a panel's widget that is being dragged will ask for
+  CommandArguments pendingArguments_;
+  std::optional<LookSettings> pendingLook_;
 
   std::string message_;
   bool messageIsProblem_ = false;

@@ -30,6 +30,47 @@ std::vector<Action> Studio::viewActions() {
   list.push_back({"mesh_next", "Next style", "View/Hair mesh", "Z", "Goes through the styles of the mesh.",
                   [&s] { s.mesh = MeshStyle((int(s.mesh) + 1) % 4); }});
 
+  const auto headStyle = [&](const char* name, const char* label, const char* help, HeadStyle style) {
+    list.push_back({name, label, "View/Head", "", help, [this, style] { view_.settings.headStyle = style; },
+                    [this, style] { return view_.settings.headStyle == style; }});
+  };
+  headStyle("head_shaded", "Shaded", "The head as it is lit.", HeadStyle::Shaded);
+  headStyle("head_wire", "Wire", "The head as lines.", HeadStyle::Wire);
+  headStyle("head_xray", "X-ray", "The head as glass: what is behind it can be seen and picked.",
+            HeadStyle::XRay);
+  list.push_back({"head_next", "Next style", "View/Head", "Alt+Z", "Goes through the styles of the head.",
+                  [&s] { s.headStyle = HeadStyle((int(s.headStyle) + 1) % 3); }});
+  const auto color = [&](const char* name, const char* label, MeshColor by) {
+    list.push_back({name, label, "View/Hair mesh colours", "", std::string("One colour a ") + label + ".",
+                    [this, by] { view_.settings.color = by; },
+                    [this, by] { return view_.settings.color == by; }});
+  };
+  color("color_layer", "layer", MeshColor::Layer);
+  color("color_bundle", "bundle", MeshColor::Bundle);
+  color("color_group", "group", MeshColor::Group);
+  list.push_back({"color_next", "Next colours", "View/Hair mesh colours", "Shift+Z",
+                  "Colours by layer, by bundle, by group.",
+                  [&s] { s.color = MeshColor((int(s.color) + 1) % 3); }});
+  const auto shade = [&](const char* name, const char* label, const char* key, const char* help,
+                         PreviewShading shading) {
+    list.push_back({name, label, "View/Shading", key, help,
+                    [this, shading] { view_.settings.shading = shading; },
+                    [this, shading] { return view_.settings.shading == shading; }});
+  };
+  shade("shade_studio", "Studio", "F5", "Soft highlights by eye: quick.", PreviewShading::Studio);
+  shade("shade_kajiya", "Kajiya-Kay", "F6", "Kajiya and Kay's highlights.", PreviewShading::KajiyaKay);
+  shade("shade_marschner", "Marschner", "F7", "Light through single hairs.", PreviewShading::Marschner);
+  shade("shade_dual", "Dual scattering", "F8", "Light from hair to hair: the truest.",
+        PreviewShading::DualScattering);
+  show("shadows", "Shadows", "Alt+4", "Hair shades hair and head.", s.shadows);
+  show("show_grid", "Grid", "Alt+5", "Shows the ground's grid.", s.grid);
+  show("show_axes", "Axes", "Alt+6", "Shows the axes in the corner.", s.axes);
+  list.push_back({"beside", "Strands beside the mesh", "View", "Ctrl+B",
+                  "Two views: with the mesh and without.", [&s] { s.beside = !s.beside; },
+                  [&s] { return s.beside; }});
+  list.push_back({"turntable", "Turntable", "View", "T", "Turns the model until it is pressed again.",
+                  [&s] { s.turntable = !s.turntable; }, [&s] { return s.turntable; }});
+
   const auto look = [&](const char* name, const char* label, const char* key, double azimuth,
                         double elevation) {
     list.push_back({name, label, "View/Look from", key, std::string("Looks from there: ") + label + ".",

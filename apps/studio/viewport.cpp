@@ -25,7 +25,9 @@ bool sameTopology(const HairMesh& a, const HairMesh& b) {
 
 void Viewport::place(const ImVec2& origin, const ImVec2& size) {
   origin_ = origin;
-  size_ = {std::max(size.x, 1.0f), std::max(size.y, 1.0f)};
+  const float width = settings.beside ? std::floor(0.5f * size.x) : size.x;
+  size_ = {std::max(width, 1.0f), std::max(size.y, 1.0f)};
+  besideOrigin_ = {origin.x + size.x - width, origin.y};
   hovered_ = !ImGui::GetIO().WantCaptureMouse &&
              ImGui::IsMouseHoveringRect(origin_, {origin_.x + size_.x, origin_.y + size_.y}, false);
 }
@@ -36,7 +38,10 @@ void Viewport::update(const HairMesh& mesh, std::uint64_t revision, const EditSt
   for (const Vec3& v : {camera.eye, camera.target, camera.up, Vec3(camera.fovDeg, size_.x, size_.y)}) {
     for (double x : v) lens = hashCombine(lens, std::bit_cast<std::uint64_t>(x));
   }
-  const Surface* occluder = settings.mesh == MeshStyle::XRay || !settings.showHead ? nullptr : head;
+  const Surface* occluder =
+      settings.mesh == MeshStyle::XRay || !settings.showHead || settings.headStyle == HeadStyle::XRay
+          ? nullptr
+          : head;
   lens = hashCombine(lens, occluder != nullptr ? 1 : 0);
   const std::uint64_t key = hashCombine(hashCombine(revision, lens), std::uint64_t(settings.showInternal));
   if (screen_ && key == shownKey_) return;
@@ -133,6 +138,10 @@ void Viewport::drawPicture(std::uint32_t texture) const {
   if (texture == 0) return;
   ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(std::uintptr_t(texture)), origin_,
                                            {origin_.x + size_.x, origin_.y + size_.y});
+  if (settings.beside) {
+    ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(std::uintptr_t(texture)), besideOrigin_,
+                                             {besideOrigin_.x + size_.x, besideOrigin_.y + size_.y});
+  }
 }
 
 }  // namespace coif::studio

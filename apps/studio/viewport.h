@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "coif/preview/preview.h"
 #include "coif/scene/editor.h"
 #include "coif/scene/navigation.h"
 #include "coif/scene/picking.h"
@@ -22,7 +23,11 @@ struct ViewSettings {
   MeshStyle mesh = MeshStyle::Wire;
   MeshColor color = MeshColor::Layer;
   HeadStyle headStyle = HeadStyle::Shaded;
-  bool showInternal = false, showHead = true, showStrands = true, grid = true;
+  bool showInternal = false, showHead = true, showStrands = true, grid = true, axes = true;
+  bool beside = false;  ///< the mesh at the left, the strands alone at the right
+  bool turntable = false;
+  PreviewShading shading = PreviewShading::Studio;
+  bool shadows = true;
   SelectKind kind = SelectKind::Vertex;
   MouseHabit habit = MouseHabit::Blender;
 };
@@ -47,6 +52,7 @@ class Viewport {
   bool parallel() const { return camera.fovDeg < 1; }
   void setParallel(bool on);
 
+  /// The picture, twice where the strands stand beside the mesh.
   void drawPicture(std::uint32_t texture) const;
   bool hovered() const { return hovered_; }
   Vec2 mouse() const;  ///< in the view's own pixels
@@ -55,6 +61,7 @@ class Viewport {
   int height() const { return int(size_.y); }
   double aspect() const { return size_.y > 0 ? double(size_.x) / double(size_.y) : 1; }
   const ImVec2& origin() const { return origin_; }
+  const ImVec2& besideOrigin() const { return besideOrigin_; }
   const ImVec2& size() const { return size_; }
   ImVec2 toWindow(const Vec2& px) const { return {origin_.x + float(px.x()), origin_.y + float(px.y())}; }
   /// Scene units a pixel, at the depth of a point.
@@ -66,6 +73,7 @@ class Viewport {
 
  private:
   ImVec2 origin_{0, 0}, size_{1, 1};
+  ImVec2 besideOrigin_{0, 0};
   bool hovered_ = false;
   std::unique_ptr<ScreenMesh> screen_;
   std::uint64_t shownKey_ = 0, lens_ = 0;

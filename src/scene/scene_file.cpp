@@ -192,6 +192,18 @@ LookSettings readLook(JsonReader reader) {
   out.azimuthDeg = reader.number("azimuth", base.azimuthDeg, -1e6, 1e6);
   out.elevationDeg = reader.number("elevation", base.elevationDeg, -90, 90);
   out.hairColor = reader.color("hairColor", base.hairColor);
+  out.longitudinalRoughness = reader.number("longitudinalRoughness", base.longitudinalRoughness, 0, 1);
+  out.azimuthalRoughness = reader.number("azimuthalRoughness", base.azimuthalRoughness, 0, 1);
+  if (!reader.has("light")) return out;
+  JsonReader light = reader.object("light");
+  LightSettings& l = out.light;
+  l.azimuthDeg = light.number("azimuth", l.azimuthDeg, -1e6, 1e6);
+  l.elevationDeg = light.number("elevation", l.elevationDeg, -90, 90);
+  l.key = light.number("key", l.key, 0, 1000);
+  l.fill = light.number("fill", l.fill, 0, 1000);
+  l.rim = light.number("rim", l.rim, 0, 1000);
+  l.sky = light.number("sky", l.sky, 0, 1000);
+  l.followCamera = light.integer("followCamera", l.followCamera, 0, 1) != 0;
   return out;
 }
 
@@ -244,7 +256,17 @@ std::string sceneText(const Scene& scene) {
   const Vec3f& c = scene.look.hairColor;
   out["look"] = {{"azimuth", scene.look.azimuthDeg},
                  {"elevation", scene.look.elevationDeg},
-                 {"hairColor", {c[0], c[1], c[2]}}};
+                 {"hairColor", {c[0], c[1], c[2]}},
+                 {"longitudinalRoughness", scene.look.longitudinalRoughness},
+                 {"azimuthalRoughness", scene.look.azimuthalRoughness}};
+  const LightSettings& l = scene.look.light;
+  out["look"]["light"] = {{"azimuth", l.azimuthDeg},
+                          {"elevation", l.elevationDeg},
+                          {"key", l.key},
+                          {"fill", l.fill},
+                          {"rim", l.rim},
+                          {"sky", l.sky},
+                          {"followCamera", l.followCamera ? 1 : 0}};
   out["dynamics"] = scene::dynamicsJson(scene.dynamics);
   out["placedHash"] = scene.placedHash;
   out["hairMesh"] = meshJson(scene.hairMesh);

@@ -3,10 +3,11 @@
 import json
 import os
 import subprocess
+import time
 
 import numpy as np
 import pytest
-from studio_window import BIN, needs_window
+from studio_window import BAR, BIN, RIGHT, SIZE, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 
@@ -42,6 +43,8 @@ KEYLESS = {
     "select", "displace", "brush",  # lists that the mouse fills in
     "set_strands", "set_look", "set_light", "set_dynamics",  # panels
     "mesh_hidden", "mesh_wire", "mesh_shaded", "mesh_xray",  # Z goes through them
+    "head_shaded", "head_wire", "head_xray",  # Alt+Z
+    "color_layer", "color_bundle", "color_group",  # Shift+Z
     "maya_habits", "light_theme",  # settings
     "kind_layer", "kind_group",  # Maya has other uses for 5 and 6
 }
@@ -70,3 +73,66 @@ def test_parallel_and_steps_and_frame_all(studio):
     studio.key("Home")
     assert np.abs(studio.shot("view-all")[VIEW] - close).mean() > 2
     assert studio.lines() == [], "looking changes no document"
+
+
+def test_the_mesh_and_the_head_are_shown_in_every_style(studio):
+    studio.key("KP_1")
+    pictures = [studio.shot("style-wire")[VIEW]]
+    for name, key in [("shaded", "z"), ("shaded-bundles", "shift+z"), ("xray", "z"), ("hidden", "z"),
+                      ("head-wire", "alt+z"), ("head-xray", "alt+z"), ("no-strands", "alt+1"), ("beside", "ctrl+b")]:
+        studio.key(key)
+        time.sleep(0.5)
+        pictures.append(studio.shot(f"style-{name}")[VIEW])
+    for before, after in zip(pictures, pictures[1:], strict=False):
+        assert np.abs(before - after).max() > 30, "each style looks another"
+
+
+def test_light_and_colour_are_seen_at_once_and_stay_in_the_document(studio):
+    studio.key("F8")  # light from hair to hair
+    time.sleep(1.5)
+    dark = studio.shot("light-before")[VIEW]
+    width = SIZE[0]
+    studio.click(width - RIGHT + 60, 60)  # the panel of hair colours
+    line = studio.does(lambda: studio.click(width - RIGHT + 50, 175), "set_look")
+    assert "color=" in line
+    time.sleep(1.5)
+    assert np.abs(studio.shot("light-colour")[VIEW] - dark).max() > 25
+    studio.click(width - RIGHT + 60, 60)
+    studio.click(width - RIGHT + 60, 83)  # the panel of lights
+    line = studio.does(lambda: studio.drag((width - RIGHT + 60, 160), (width - RIGHT + 130, 130)), "set_light")
+    assert "azimuth=" in line
+    time.sleep(1.5)
+    studio.shot("light-moved")
+    studio.saved()
+    look = json.loads((studio.folder / "bob.coif").read_text())["look"]
+    assert look["light"]["azimuth"] != -42
+
+
+def test_a_turntable_turns_and_is_written(studio):
+    before = studio.shot("turntable-before")[VIEW]
+    studio.key("t")
+    time.sleep(1)
+    studio.key("t")
+    assert np.abs(studio.shot("turntable-after")[VIEW] - before).mean() > 2
+    studio.key("ctrl+F12", "ctrl+a")
+    studio.type(str(studio.folder / "turn.png"))
+    studio.key("Return")
+    first, third = studio.folder / "turn-0001.png", studio.folder / "turn-0003.png"
+    studio.wait(third.exists, "three pictures")
+    studio.key("Escape")
+    from PIL import Image
+
+    a, b = (np.asarray(Image.open(p).convert("RGB"), float) for p in (first, third))
+    assert a.shape == b.shape and np.abs(a - b).mean() > 1, "from another side"
+
+
+def test_the_axes_in_the_corner_are_clicked(studio):
+    studio.key("KP_1")
+    front = studio.shot("axes-front")[VIEW]
+    at = (SIZE[0] - RIGHT - 46 + 30, BAR + 48)  # the ball of +x, seen from the front
+    studio.click(*at)
+    side = studio.shot("axes-right")[VIEW]
+    assert np.abs(front - side).mean() > 2
+    studio.key("KP_1", "KP_3")
+    assert np.abs(studio.shot("axes-key")[VIEW] - side).mean() < 6, "the same side as by the key"
+    assert studio.lines() == []

@@ -6,6 +6,8 @@
 
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
+#include "coif/light/fibre.h"
+#include "coif/light/lights.h"
 #include "coif/simulate/dynamics_settings.h"
 #include "coif/strands/grow.h"
 
@@ -29,11 +31,26 @@ struct StrandSettings {
   bool operator==(const StrandSettings&) const = default;
 };
 
+/// Where the key light stands, and how strong the lights are beside Lights' own.
+struct LightSettings {
+  double azimuthDeg = -42, elevationDeg = 38;  ///< of the key light; 0, 0: from the eye, or from the front
+  double key = 1, fill = 1, rim = 1, sky = 1;  ///< factors, >= 0
+  bool followCamera = true;                    ///< else they stay where they are about the head
+  bool operator==(const LightSettings&) const = default;
+};
+
 /// How `coif render` looks at it when not told otherwise.
 struct LookSettings {
   double azimuthDeg = 30, elevationDeg = 8;      ///< of the camera; 0, 0 looks at the face
   Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);  ///< linear RGB reflectance
+  double longitudinalRoughness = 0.3, azimuthalRoughness = 0.3;  ///< FibreParameters' β_m and β_n
+  LightSettings light;
+  bool operator==(const LookSettings&) const = default;
 };
+
+Lights lightsOf(const LightSettings& settings, UpAxis upAxis);
+/// Of the hair's surface; its colour is hairColor.
+FibreParameters fibreOf(const LookSettings& look);
 
 struct Scene {
   static constexpr int kVersion = 2;  ///< of the file format; 1 had no dynamics

@@ -95,8 +95,22 @@ Status setLook(Work& work, const Arguments& arguments) {
   const Vec3 color = arguments.vector("color");
   if (color.minCoeff() < 0 || color.maxCoeff() > 1) return refuse("the colour's parts lie between 0 and 1");
   work.state.look.hairColor = color.cast<float>();
+  work.state.look.longitudinalRoughness = arguments.number("roughness");
+  work.state.look.azimuthalRoughness = arguments.number("azimuthal_roughness");
   work.state.look.azimuthDeg = arguments.number("azimuth");
   work.state.look.elevationDeg = arguments.number("elevation");
+  return {};
+}
+
+Status setLight(Work& work, const Arguments& arguments) {
+  LightSettings& light = work.state.look.light;
+  light.azimuthDeg = arguments.number("azimuth");
+  light.elevationDeg = arguments.number("elevation");
+  light.key = arguments.number("key");
+  light.fill = arguments.number("fill");
+  light.rim = arguments.number("rim");
+  light.sky = arguments.number("sky");
+  light.followCamera = arguments.flag("follow_camera");
   return {};
 }
 
@@ -143,8 +157,22 @@ std::vector<Command> settingCommands() {
         "Hair colour and camera.",
         {vector("color", Vec3(0.16, 0.08, 0.04), "Linear RGB reflectance."),
          number("azimuth", 30, -1e6, 1e6, "Degrees; 0 looks at the face."),
-         number("elevation", 8, -90, 90, "Degrees.")}},
+         number("elevation", 8, -90, 90, "Degrees."),
+         number("roughness", 0.3, 0, 1, "Along the hair: how wide highlights are."),
+         number("azimuthal_roughness", 0.3, 0, 1, "Around the hair: how far light is spread.")}},
        setLook},
+      {{"set_light",
+        "Light",
+        "View",
+        "",
+        "Where the key light stands, and how strong all lights are.",
+        {number("azimuth", -42, -1e6, 1e6, "Degrees, of the key light; 0: from the eye, or the front."),
+         number("elevation", 38, -90, 90, "Degrees."), number("key", 1, 0, 1000, "Factor of the key light."),
+         number("fill", 1, 0, 1000, "Factor of the fill light."),
+         number("rim", 1, 0, 1000, "Factor of the light from behind."),
+         number("sky", 1, 0, 1000, "Factor of the light from all around."),
+         flag("follow_camera", true, "The lights turn with the camera; else they stay about the head.")}},
+       setLight},
   };
 }
 

@@ -11,8 +11,7 @@ namespace coif {
 bool EditState::operator==(const EditState& o) const {
   return selection == o.selection && hidden == o.hidden && frozen == o.frozen && symmetric == o.symmetric &&
          mirrorPoint == o.mirrorPoint && mirrorNormal == o.mirrorNormal && strands == o.strands &&
-         look.azimuthDeg == o.look.azimuthDeg && look.elevationDeg == o.look.elevationDeg &&
-         look.hairColor == o.look.hairColor;
+         look == o.look;
 }
 
 namespace {
@@ -167,7 +166,13 @@ std::vector<std::byte> Editor::canonicalState() const {
   }
   const StrandSettings& s = state_.strands;
   put(std::uint64_t(s.count)), put(s.points), put(s.tolerance), put(s.seed), put(s.knots), put(s.width);
-  put(s.tipWidth), put(state_.look.azimuthDeg), put(state_.look.elevationDeg);
+  const LookSettings& look = state_.look;
+  put(s.tipWidth), put(look.azimuthDeg), put(look.elevationDeg);
+  put(look.longitudinalRoughness), put(look.azimuthalRoughness);
+  const LightSettings& light = look.light;
+  for (double value : {light.azimuthDeg, light.elevationDeg, light.key, light.fill, light.rim, light.sky})
+    put(value);
+  put(light.followCamera);
   for (int i = 0; i < 3; ++i) put(state_.look.hairColor[i]);
   return bytes;
 }
