@@ -92,6 +92,7 @@ bool Studio::drawArgument(const CommandArgument& argument, CommandArguments& val
 void Studio::drawAdjustPanel() {
   const CommandInfo* info = findCommand(lastCommand_);
   if (info == nullptr || info->arguments.empty() || info->name == "select") return;
+  if (info->name.starts_with("set_") && info->name != "set_group") return;  // it has a panel of its own
   if (!ImGui::CollapsingHeader((info->label + "###adjust").c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
   CommandArguments values = lastArguments_;
   bool changed = false;

@@ -40,6 +40,7 @@ const std::map<std::string, std::string>& mayaKeys() {
       {"scale", "Shift+Y"},
       {"soft_selection", "B"},
       {"shade_dual", "Ctrl+F8"},
+      {"color_next", "5"},
   };
   return keys;
 }

@@ -233,6 +233,24 @@ TEST(Editor, SnapsToTheGridTheScalpAndTheNextVertex) {
   EXPECT_TRUE(editor.mesh().vertices().back().position.isApprox(Vec3(2, 1, -1), 1e-12));
 }
 
+TEST(Editor, LightsAreTheDocuments) {
+  Editor editor(gridScene(2, 1));
+  ASSERT_TRUE(
+      editor.run("set_light", {{"azimuth", 90.0}, {"elevation", 0.0}, {"key", 2.0}, {"sky", 0.0}}).ok());
+  const Lights standard, lights = lightsOf(editor.scene().look.light, UpAxis::Y);
+  EXPECT_TRUE(lights.key.direction.isApprox(Vec3::UnitX())) << "from the right";
+  EXPECT_TRUE(lights.key.color.isApprox(2 * standard.key.color));
+  EXPECT_TRUE(lights.skyColor.isZero(0));
+  EXPECT_EQ(lights.rim.color, standard.rim.color);
+  // About a head whose up is z, the front is −y.
+  ASSERT_TRUE(editor.run("set_light", {{"azimuth", 0.0}, {"elevation", 0.0}, {"follow_camera", false}}).ok());
+  EXPECT_TRUE(lightsOf(editor.scene().look.light, UpAxis::Z).key.direction.isApprox(-Vec3::UnitY()));
+  ASSERT_TRUE(editor.run("undo").ok());
+  ASSERT_TRUE(editor.run("undo").ok());
+  EXPECT_EQ(editor.scene().look.light, LightSettings{});
+  EXPECT_FALSE(editor.run("set_light", {{"fill", -1.0}}).ok());
+}
+
 TEST(Selection, WholeBundlesLayersAndGroups) {
   HairMesh mesh = gridScene(3, 2).hairMesh;
   mesh.setGroup(0, mesh.addGroup("fringe")), mesh.setGroup(8, 1);

@@ -33,11 +33,14 @@ TEST(SceneFile, RoundTripIsExact) {
   scene.strands.tolerance = 0.25;
   scene.strands.knots = Knots::Chordal;
   scene.look.azimuthDeg = -12.5;
+  scene.look.longitudinalRoughness = 0.15, scene.look.azimuthalRoughness = 0.7;
+  scene.look.light = {12, -34, 0.5, 2, 0, 3.25, false};
   scene.placedHash = 0xfedcba9876543210ULL;
   const auto again = parseScene(sceneText(scene), "sample.coif");
   ASSERT_TRUE(again.ok()) << again.error().text();
   EXPECT_EQ(again->hairMesh, scene.hairMesh);
   EXPECT_EQ(again->strands, scene.strands);
+  EXPECT_EQ(again->look, scene.look);
   EXPECT_EQ(again->placedHash, scene.placedHash);
   EXPECT_EQ(sceneText(*again), sceneText(scene));
 }
@@ -81,6 +84,7 @@ TEST(SceneFile, RefusesWhatBreaksTheFormat) {
   expectRefused([](json& d) { d["strands"]["count"] = -3; }, "strands.count");
   expectRefused([](json& d) { d["strands"]["knots"] = "square"; }, "strands.knots");
   expectRefused([](json& d) { d["look"]["hairColor"] = {0, 0, 2}; }, "look.hairColor");
+  expectRefused([](json& d) { d["look"]["light"]["rim"] = -1; }, "look.light.rim");
   expectRefused([](json& d) { d.erase("hairMesh"); }, "hairMesh");
   expectRefused([](json& d) { d["hairMesh"]["groupNames"] = {1, 2}; }, "hairMesh.groupNames");
 }
