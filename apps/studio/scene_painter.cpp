@@ -69,6 +69,8 @@ void paintHead(const Viewport& view, const Surface& head, HeadStyle style) {
   points.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) points.push_back(view.project(p));
   std::vector<ImVec2> outline;
+  const ImDrawListFlags flags = list().Flags;
+  list().Flags &= ~ImDrawListFlags_AntiAliasedFill;  // soft rims would add up to lines where faces meet
   for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
     const auto corners = mesh.face(f);
     outline.clear();
@@ -93,6 +95,7 @@ void paintHead(const Viewport& view, const Surface& head, HeadStyle style) {
     const int alpha = int(30 + 90 * (1 - std::clamp(facing, 0.0, 1.0)));
     list().AddConvexPolyFilled(outline.data(), int(outline.size()), IM_COL32(214, 178, 150, alpha));
   }
+  list().Flags = flags;
 }
 
 namespace {
