@@ -27,6 +27,12 @@ bool isOperation(const CommandInfo& info) {
   return info.menu == "Mesh" && info.changesMesh && info.name != "set_group";
 }
 
+/// Commands that want something selected, where trying costs little.
+bool wantsSelection(const CommandInfo& info) {
+  return info.menu == "Mesh" || info.menu == "Move" || info.name == "hide" || info.name == "isolate" ||
+         info.name == "freeze";
+}
+
 /// Commands that go on from what is selected, and find nothing wrong with nothing.
 bool growsSelection(const std::string& name) {
   for (const char* grows : {"select_more", "select_less", "select_linked", "select_columns"}) {
@@ -67,8 +73,9 @@ void Studio::begin(const std::string& command) {
   const CommandInfo& info = *findCommand(command);
   const CommandArguments arguments = argumentsFor(info);
   const bool nothing = document_->editor.state().selection.empty();
-  const bool fails = command != "undo" && command != "redo" && nothing &&
-                     (growsSelection(command) || !document_->editor.attempt(command, arguments).ok());
+  const bool fails =
+      nothing && (growsSelection(command) ||
+                  (wantsSelection(info) && !document_->editor.attempt(command, arguments).ok()));
   if (fails && view_.screen() != nullptr && view_.hovered()) {
     // Nothing is selected: what is under the mouse is meant.
     const Selection found = under(view_, document_->editor.mesh());

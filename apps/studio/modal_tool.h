@@ -20,6 +20,7 @@ class ModalTool {
   virtual std::string status() const = 0;           ///< what is going on and which keys help
   virtual std::string label() const { return {}; }  ///< the numbers, beside the mouse
   virtual void draw(const Viewport&) const {}
+  virtual bool usesWheel() const { return false; }  ///< then it does not zoom
   bool confirmed() const { return confirmed_; }
   bool dropped() const { return dropped_; }
 

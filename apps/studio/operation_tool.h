@@ -19,6 +19,7 @@ class OperationTool : public ModalTool {
   std::string status() const override;
   std::string label() const override;
   void draw(const Viewport& view) const override;
+  bool usesWheel() const override { return extrudes() || !choice_.empty(); }
 
  private:
   bool extrudes() const { return info_->name == "extrude"; }

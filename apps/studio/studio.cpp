@@ -230,7 +230,7 @@ bool Studio::frame() {
   takePictures();
   drawMenus();
   drawPanels();
-  const bool moving = view_.navigate() | turnTable();
+  const bool moving = view_.navigate(!tool_ || !tool_->usesWheel()) | turnTable();
   if (document_) {
     const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");

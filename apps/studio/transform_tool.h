@@ -18,6 +18,7 @@ class TransformTool : public ModalTool {
   std::string status() const override;
   std::string label() const override;
   void draw(const Viewport& view) const override;
+  bool usesWheel() const override { return soft_.radius > 0; }
   double softRadius() const { return soft_.radius; }
   const Vec3& pivot() const { return pivot_; }
 

@@ -91,7 +91,7 @@ ScreenPoint Viewport::project(const Vec3& world) const {
   return {Vec2(0.5 * width() + scale * d.dot(right()), 0.5 * height() - scale * d.dot(up())), depth};
 }
 
-bool Viewport::navigate() {
+bool Viewport::navigate(bool zooms) {
   const ImGuiIO& io = ImGui::GetIO();
   const Camera before = camera;
   const bool maya = settings.habit == MouseHabit::Maya;
@@ -102,7 +102,8 @@ bool Viewport::navigate() {
     if (turning) camera = orbit(camera, upAxis, -0.4 * io.MouseDelta.x, 0.4 * io.MouseDelta.y);
     if (shifting) camera = pan(camera, io.MouseDelta.x, io.MouseDelta.y, height());
     if (zooming) camera = dolly(camera, std::exp(0.005 * io.MouseDelta.y));
-    if (hovered_ && io.MouseWheel != 0 && !io.KeyCtrl) camera = dolly(camera, std::pow(0.88, io.MouseWheel));
+    if (zooms && hovered_ && io.MouseWheel != 0 && !io.KeyCtrl)
+      camera = dolly(camera, std::pow(0.88, io.MouseWheel));
   }
   return !camera.eye.isApprox(before.eye, 0) || !camera.target.isApprox(before.target, 0);
 }

@@ -42,8 +42,8 @@ class Viewport {
   void place(const ImVec2& origin, const ImVec2& size);
   /// Projects `mesh` anew where it, the camera or the settings changed. `revision` names the mesh's state.
   void update(const HairMesh& mesh, std::uint64_t revision, const EditState& state, const Surface* head);
-  /// Orbit, pan and zoom by the mouse; true while the camera moves.
-  bool navigate();
+  /// Orbit, pan and, with `zooms`, the wheel; true while the camera moves.
+  bool navigate(bool zooms);
   /// Box of everything, or of the selection when there is one.
   void frame(const HairMesh& mesh, const Selection& selection);
 

@@ -233,6 +233,21 @@ TEST(Editor, SnapsToTheGridTheScalpAndTheNextVertex) {
   EXPECT_TRUE(editor.mesh().vertices().back().position.isApprox(Vec3(2, 1, -1), 1e-12));
 }
 
+TEST(Editor, WhatIsHiddenIsSelectedByItsIdAlone) {
+  Editor editor(gridScene(3, 1));
+  ASSERT_TRUE(editor.run("select", ids("faces", {0, 1})).ok());
+  ASSERT_TRUE(editor.run("hide").ok());
+  ASSERT_TRUE(editor.run("select_all", {{"kind", std::string("face")}}).ok());
+  EXPECT_EQ(editor.state().selection.faces.size(), 16u);
+  ASSERT_TRUE(editor.run("select_all").ok());
+  EXPECT_EQ(editor.state().selection.vertices.size(), 30u)
+      << "the grid's corner is the hidden bundle's alone";
+  ASSERT_TRUE(editor.run("select_invert").ok());
+  EXPECT_TRUE(editor.state().selection.empty());
+  ASSERT_TRUE(editor.run("select", ids("faces", {0, 1})).ok());
+  EXPECT_EQ(editor.state().selection.faces.size(), 1u);
+}
+
 TEST(Editor, LightsAreTheDocuments) {
   Editor editor(gridScene(2, 1));
   ASSERT_TRUE(

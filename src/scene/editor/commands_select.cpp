@@ -128,9 +128,44 @@ std::function<Status(Work&, const Arguments&)> changeBy(Change change) {
   };
 }
 
+/// Without what only hidden bundles have.
+Selection shownOnly(const Work& work, const Selection& selection) {
+  const auto hidden = [&](BundleId id) { return std::ranges::binary_search(work.state.hidden, id); };
+  std::vector<std::uint8_t> shown(work.mesh.vertices().size(), 0);
+  for (const Bundle& bundle : work.mesh.bundles()) {
+    for (std::uint32_t v : bundle.vertices) shown[v] |= !hidden(bundle.id);
+  }
+  Selection out = selection;
+  std::erase_if(out.vertices, [&](VertexId id) { return !shown[work.mesh.indexOf(id)]; });
+  std::erase_if(out.faces, [&](const FaceRef& face) { return hidden(face.bundle); });
+  std::erase_if(out.edges, [&](const EdgeRef& edge) {
+    return std::ranges::any_of(selectedVertices(work.mesh, {{}, {edge}, {}}),
+                               [&](auto v) { return !shown[v]; });
+  });
+  return out;
+}
+
+std::vector<Command> allSelectCommands();
+
 }  // namespace
 
+/// What is hidden is selected by its id alone.
 std::vector<Command> selectCommands() {
+  std::vector<Command> list = allSelectCommands();
+  for (Command& command : list) {
+    if (command.info.name == "select") continue;
+    command.run = [inner = std::move(command.run)](Work& work, const Arguments& arguments) -> Status {
+      COIF_TRY(inner(work, arguments));
+      if (!work.state.hidden.empty()) work.selection() = shownOnly(work, work.selection());
+      return {};
+    };
+  }
+  return list;
+}
+
+namespace {
+
+std::vector<Command> allSelectCommands() {
   const CommandArgument layer = integer("layer", 0, 0, 1e6, "The layer; 0 is the root.");
   return {
       {{"select",
@@ -192,4 +227,5 @@ std::vector<Command> selectCommands() {
   };
 }
 
+}  // namespace
 }  // namespace coif::editor
