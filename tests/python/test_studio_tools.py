@@ -121,7 +121,7 @@ def test_a_brush_stroke_is_one_step_and_plays_back(studio):
     assert studio.saved() == before
 
 
-def test_keys_change_the_brush(studio):
+def test_keys_change_the_brushes_size(studio):
     studio.key("shift+7")
     c = studio.middle()
     stroke = lambda: studio.drag(c + (70, -50), c + (90, -30))  # noqa: E731
@@ -136,6 +136,13 @@ def test_keys_change_the_brush(studio):
     studio.click(*(c + (60, 0)))
     third = arguments(studio.does(stroke, "brush("))
     assert third["radius"] > 1.5 * second["radius"], "F and the mouse"
+
+
+def test_keys_change_what_a_brush_does(studio):
+    studio.key("shift+7")
+    c = studio.middle()
+    stroke = lambda: studio.drag(c + (70, -50), c + (90, -30))  # noqa: E731
+    studio.point(*(c + (90, -30)))
     studio.key("shift+f")
     studio.point(*(c + (90 + 60, -30)))
     studio.key("Return")
