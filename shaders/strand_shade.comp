@@ -83,9 +83,10 @@ vec3 shade(StrandPoint p, uint seed, vec3 toEye, Reach reach) {
   vec3 t = p.tangentSeed.xyz;
   Bearings key = bearingsOf(t, lightDirection[0].xyz, toEye);
   vec3 sum = vec3(0);
-  for (int k = 0; k < lookUps; ++k) sum += reachedThrough(key, reach.keyDepths[k], reach.keyWeights[k]);
+  for (int k = 0; k < lookUps && lightColor[0].rgb != vec3(0); ++k) sum += reachedThrough(key, reach.keyDepths[k], reach.keyWeights[k]);
   sum *= lightColor[0].rgb * reach.pastHead.x;
   for (int l = 1; l < 3; ++l) {
+    if (lightColor[l].rgb == vec3(0)) continue;
     Bearings b = bearingsOf(t, lightDirection[l].xyz, toEye);
     sum += lightColor[l].rgb * reach.pastHead[l] *
            reachedThrough(b, vec4(reach.depths[l - 1], 0, 0, 0), vec4(1, 0, 0, 0));

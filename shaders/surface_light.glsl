@@ -12,10 +12,11 @@ SurfaceLight lightOn(vec3 p, vec3 n) {
   // A surface r texels away is at most r sin θ texels, along its normal, nearer to the light.
   vec3 above = p + n * (2.5 * shadowInfo.z);
   float key = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    float a = u + 1.5707963 * float(k);
-    vec2 offset = 0.5 * (1.0 + float(k)) * vec2(cos(a), sin(a));
-    key += 0.25 * keyPastHead(above, offset, 0.0) * keyTransmittance(keyTaps(above, offset), vec3(1)).x;
+  int lookUps = int(headColor.w);   // of four places, which the sub-frames share
+  for (int k = 0; k < lookUps; ++k) {
+    float place = float((int(viewport.z) * lookUps + k) & 3), a = u + 1.5707963 * place;
+    vec2 offset = 0.5 * (1.0 + place) * vec2(cos(a), sin(a));
+    key += 1.0 / float(lookUps) * keyPastHead(above, offset, 0.0) * keyTransmittance(keyTaps(above, offset), vec3(1)).x;
   }
   return SurfaceLight(vec3(key, exp(-0.8 * hair.y), exp(-0.8 * hair.z)), hair.w);
 }

@@ -70,7 +70,7 @@ ProgramSource headProgram(const VisibilityOptions& visibility, bool studio);
 ProgramSource groundProgram(const VisibilityOptions& visibility);
 /// `fibre` null: the shading without tables.
 ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
-                           bool multiple);
+                           bool multiple, bool grey);
 
 /// Edges and faces of the hair mesh, one colour a layer.
 class OverlayPass {

@@ -13,7 +13,7 @@ ProgramSource groundProgram(const VisibilityOptions& visibility) {
 }
 
 ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
-                           bool multiple) {
+                           bool multiple, bool grey) {
   ProgramSource source{"strand_shade.comp", "", {}};
   if (shadows) {
     source.defines = mapDefines(visibility);
@@ -22,7 +22,7 @@ ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, co
   source.defines.push_back(fibre == nullptr ? "SHADING_STUDIO"
                            : multiple       ? "SHADING_DUAL"
                                             : "SHADING_SINGLE");
-  if (fibre != nullptr && fibre->grey()) source.defines.push_back("GREY");
+  if (fibre != nullptr && grey) source.defines.push_back("GREY");
   return source;
 }
 

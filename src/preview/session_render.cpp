@@ -228,14 +228,17 @@ void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, cons
 Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer,
                                          Picture& picture, const Context& context) {
   const bool withHair = hair && options.shadows;
-  const VisibilityMethod method = options.visibility.method;
+  VisibilityOptions visibility = options.visibility;
+  const bool dark = withHair && options.leaveOut && lights.key.color.isZero(0);
+  if (dark) visibility.method = VisibilityMethod::None;
+  const VisibilityMethod method = visibility.method;
   const bool needsLines = method != VisibilityMethod::None && method != VisibilityMethod::LightMap;
   const bool otherLines =
       needsLines && (shadowStrands == nullptr || shadowOld || shadowDetail != mapDetailOf(options, *device));
   const bool moved = withHair && (otherLines || fog == nullptr);
   const bool light = sameLight(frame, shadowFrame);
   if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair &&
-      sameMap(options.visibility, shadowOptions)) {
+      sameMap(visibility, shadowOptions)) {
     copyShadowFields(shadowFrame, frame);
     glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
     report(picture, "shadow maps", withHair ? StageState::Reused : StageState::Skipped,
@@ -256,16 +259,17 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
   if (withHair && fog == nullptr) fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
   COIF_ASSIGN(ShadowPass made,
-              ShadowPass::make(*device->programs, lightView, options.visibility, options.leaveOut,
+              ShadowPass::make(*device->programs, lightView, visibility, options.leaveOut,
                                withHair ? &hair->model.coarse : nullptr, withHair ? fog.get() : nullptr,
                                withHair && needsLines ? shadowStrands.get() : nullptr,
                                options.shadows ? headBuffers.get() : nullptr, frame, context));
   shadows = std::make_unique<ShadowPass>(std::move(made));
   stage.bytes = shadows->map().bytes();
+  if (dark) stage.notes.push_back("the key light is dark: no map");
   if (!shadows->map().choice().empty()) stage.notes.push_back(shadows->map().choice());
   shadowFrame = frame;
   shadowsHaveHair = withHair;
-  shadowOptions = options.visibility;
+  shadowOptions = visibility;
   return {};
 }
 
@@ -302,7 +306,7 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
 
 void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture) {
   if (!hair) return;
-  constexpr int kMostLookUps = 4;
+  constexpr int kMostLookUps = 2;  // a point; hairs that overlap make the mean of more
   constexpr double kDark = 0.01;  // of the light goes on through a hair: nothing is left after two
   StageReport& stage = report(picture, "shading", StageState::Ran, "light, hair or camera may have moved");
   const StageTimer timer(stage, options.measure);
@@ -315,10 +319,11 @@ void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture
   const bool asked = options.shading == PreviewShading::DualScattering;
   const bool multiple = asked && !(options.leaveOut && fibre->mostForward() < kDark);
   if (asked && !multiple) stage.notes.push_back("dark hair: no multiple scattering");
-  if (tables && fibre->grey()) stage.notes.push_back("grey hair: one channel");
+  const bool grey = tables && options.leaveOut && fibre->grey();
+  if (grey) stage.notes.push_back("grey hair: one channel");
   shadows->bindForHair();
   glUseProgram((*device->programs)(
-      shadeProgram(shadows->map().options(), shadowsHaveHair, tables ? fibre.get() : nullptr, multiple)));
+      shadeProgram(shadows->map().options(), shadowsHaveHair, tables ? fibre.get() : nullptr, multiple, grey)));
   glUniform1i(1, std::min(options.subframes, kMostLookUps));
   eyeStrands->dispatchPoints();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

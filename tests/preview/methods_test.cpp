@@ -120,6 +120,58 @@ TEST_F(Methods, EveryShadowMethodDarkensTheHairAboutAsTheSortedListsDo) {
   }
 }
 
+TEST_F(Methods, ExtremeFibresAndLightsGiveFinitePictures) {
+  const StrandSet strands = tuft(1500, 0.006f);
+  PreviewScene scene = sceneOf(strands);
+  scene.lights.followCamera = false;
+  for (const double grazing : {90.0, 89.9, 0.0}) {  // between the key light and the first strand's normal plane
+    const Vec3 along = (strands.points[1] - strands.points[0]).cast<double>().normalized();
+    const double angle = grazing * 3.14159265358979323846 / 180;
+    scene.lights.key.direction = std::sin(angle) * along + std::cos(angle) * along.unitOrthogonal();
+    for (const double roughness : {1e-3, 1.0}) {
+      for (const double absorption : {0.0, 1e4}) {
+        PreviewOptions options = small(64, 1);
+        options.shading = PreviewShading::DualScattering;
+        options.useAbsorption = true;
+        options.fibre.absorption = Vec3::Constant(absorption);
+        options.fibre.longitudinalRoughness = options.fibre.azimuthalRoughness = roughness;
+        const Image image = render(scene, options).image;
+        EXPECT_GT(alphaSum(image), 200);
+        // Even the blackest hair reflects some of the sky: black is what a value that is not a number leaves.
+        for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+          const std::uint8_t* p = &image.rgba[i];
+          ASSERT_TRUE(p[3] <= 8 || p[0] + p[1] + p[2] > 0) << grazing << " " << roughness << " " << absorption;
+        }
+        EXPECT_EQ(speckles(image), 0) << grazing << " " << roughness << " " << absorption;
+      }
+    }
+  }
+}
+
+TEST_F(Methods, AllStrandsInOneTexelOfTheMapShadeEachOther) {
+  StrandSet strands;  // a bundle towards the light, seen from the side
+  for (int i = 0; i < 3000; ++i) addStrand(strands, {Vec3f(0, 0, 0), Vec3f(1e-4f, 1, 0)}, 0.02f);
+  addStrand(strands, {Vec3f(-0.5f, 0, 0), Vec3f(-0.5f, 0.01f, 0)}, 0.02f);  // so that the map is not one texel
+  PreviewScene scene;
+  scene.strands = &strands;
+  scene.camera = frameBox({Vec3(-0.5, 0, -0.1), Vec3(0.5, 1, 0.1)}, UpAxis::Y, 0, 0);
+  scene.lights.followCamera = false;
+  scene.lights.key.direction = Vec3(0, 1, 0.02);
+  for (const VisibilityMethod method : {VisibilityMethod::DeepOpacity, VisibilityMethod::Occupancy,
+                                        VisibilityMethod::DensityClustering, VisibilityMethod::Exact}) {
+    PreviewOptions options = small(96, 1);
+    options.shading = PreviewShading::DualScattering;
+    options.visibility.method = method;
+    options.lod = false;
+    const Image image = render(scene, options).image;
+    EXPECT_GT(alphaSum(image), 50);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+      const std::uint8_t* p = &image.rgba[i];
+      ASSERT_TRUE(p[3] <= 8 || p[0] + p[1] + p[2] > 0) << name(method);
+    }
+  }
+}
+
 TEST_F(Methods, ExtremeHairLeavesNoBlackPixel) {
   StrandSet one, line, tiny, inside;
   addStrand(one, {Vec3f(-0.4f, 0.2f, 0), Vec3f(0.4f, 0.5f, 0)}, 0.02f);

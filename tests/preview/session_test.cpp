@@ -1,6 +1,7 @@
 // What a session uploads and keeps, by numbers; and hair at its extremes.
 #include "coif/preview/session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -93,6 +94,27 @@ TEST_F(Sessions, EveryShadowMethodIsKeptWhileLightAndHairAre) {
     ASSERT_TRUE(session.moveHair(positions).ok());
     EXPECT_EQ(stateOf(picture(session, options), "shadow maps"), StageState::Ran) << name(method);
     EXPECT_EQ(stateOf(picture(session, options), "shadow maps"), StageState::Reused) << name(method);
+  }
+}
+
+TEST_F(Sessions, WithoutAKeyLightNoMapIsDrawnAndThePictureIsTheSame) {
+  PreviewSession session = this->session(mesh_, strands_);
+  Lights lights;
+  lights.followCamera = false;
+  lights.key.color = Vec3f::Zero();
+  session.setLights(lights);
+  for (const PreviewShading shading : {PreviewShading::Studio, PreviewShading::DualScattering}) {
+    PreviewOptions options = small(96, 1);
+    options.shading = shading;
+    const Picture left = picture(session, options);
+    options.leaveOut = false;
+    const Picture all = picture(session, options);
+    const auto drawn = [](const Picture& made) {
+      return std::ranges::count(made.stages, "strands for the maps", &StageReport::name);
+    };
+    EXPECT_EQ(drawn(left), 0);
+    EXPECT_EQ(drawn(all), 1);
+    EXPECT_EQ(left.image.rgba, all.image.rgba);
   }
 }
 
