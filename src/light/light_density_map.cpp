@@ -1,9 +1,10 @@
 #include "coif/light/light_density_map.h"
 
 #include <limits>
-#include <memory>
 
+#include "coif/base/lanes.h"
 #include "coif/base/parallel.h"
+#include "light/light_columns.h"
 
 namespace coif {
 namespace {
@@ -13,10 +14,15 @@ constexpr int kMostDoublings = 40;
 
 }  // namespace
 
+LightDensityMap::LightDensityMap(const LightDensityOptions& options)
+    : options_(options),
+      deposit_(options.log2Size, GridDeposit::Length::AcrossLast),
+      values_(std::make_unique_for_overwrite<float[]>(cells())) {}
+
 // In cells; for a point light x and y are the map's, z runs evenly in 1 / depth.
 Vec3 LightDensityMap::cellsOf(const Vec3& world) const {
   if (!view_.perspective) {
-    return Vec3(view_.up.dot(world), view_.right.dot(world), view_.forward.dot(world)) / cell_ - base_;
+    return Vec3(alongRows().dot(world), acrossRows().dot(world), view_.forward.dot(world)) / cell_ - base_;
   }
   const int n = 1 << options_.log2Size;
   const Vec3 p = view_.project(world);
@@ -27,14 +33,17 @@ Vec3 LightDensityMap::cellsOf(const Vec3& world) const {
 
 void LightDensityMap::fitCell(const FragmentStream& stream) {
   const StrandSet& strands = stream.strands();
-  Vec3 lo = Vec3::Constant(HUGE_VAL), hi = -lo;
+  Vec3 lo = Vec3::Constant(HUGE_VAL), hi = -lo, travelled = Vec3::Zero();
   for (std::size_t s = 0; s < strands.strandCount(); ++s) {
     if (!stream.usableStrand(s)) continue;
+    Vec3 last = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     for (const Vec3f& point : strands.strand(s)) {
       const Vec3 p = point.cast<double>(), d = p - view_.eye;
       const Vec3 c(view_.up.dot(p), view_.right.dot(p),
                    view_.perspective ? d.dot(view_.forward) : view_.forward.dot(p));
       lo = lo.cwiseMin(c), hi = hi.cwiseMax(c);
+      if (last.allFinite()) travelled += (c - last).cwiseAbs();
+      last = c;
     }
   }
   if (!(lo.x() <= hi.x())) lo = Vec3::Zero(), hi = Vec3::Ones();
@@ -45,6 +54,9 @@ void LightDensityMap::fitCell(const FragmentStream& stream) {
     cell_ = view_.texel * view_.size / ((1 << options_.log2Size) - 2);
     return;
   }
+  // Rows along the hair: neighbours in memory, and fewer hairs that cross from slab to slab.
+  rowsAlongRight_ = travelled.y() > travelled.x();
+  if (rowsAlongRight_) std::swap(lo.x(), lo.y()), std::swap(hi.x(), hi.y());
   low_ = lo;
   const double extent = (hi - lo).maxCoeff();
   // One guard cell before and behind; the float's rounding of the points may not reach into them.
@@ -58,56 +70,59 @@ bool LightDensityMap::gather(const FragmentStream& stream, const Context& contex
   const StrandSet& strands = stream.strands();
   points_.resize(strands.points.size());
   base_ = (low_ / cell_).array().floor();
-  const double perTexel = double(view_.size) / ((1 << options_.log2Size) - 2);
   parallelFor(context, strands.strandCount(), kStrandsAChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const bool usable = stream.usableStrand(s);
-      for (std::uint64_t p = strands.offsets[s]; p < strands.offsets[s + 1]; ++p) {
-        const Vec3 world = strands.points[p].cast<double>();
-        const double depth = (world - view_.eye).dot(view_.forward);
-        if (!usable || (view_.perspective && !(depth * inverseNear_ >= 1 - 1e-9))) {
-          points_[p] = {0, 0, 0, -1};
-          continue;
-        }
-        const Vec3 c = cellsOf(world);
-        const double cell = view_.perspective ? view_.texelAt(depth) * perTexel : cell_;
-        const auto point = std::uint32_t(p);
-        const double weight = stream.opacityAt(point) * std::max(0.0, stream.widthAt(point)) / cell;
-        const int n = 1 << options_.log2Size;
-        const bool off = view_.perspective && !(c.x() >= 1 && c.x() < n - 1 && c.y() >= 1 && c.y() < n - 1);
-        points_[p] = {float(c.x()), float(c.y()), float(c.z()), off ? -1.0f : float(weight)};
+      const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1];
+      if (!stream.usableStrand(s)) {
+        std::fill(points_.begin() + std::ptrdiff_t(first), points_.begin() + std::ptrdiff_t(last),
+                  GridPoint{0, 0, 0, -1});
+      } else if (view_.perspective) {
+        for (std::uint64_t p = first; p < last; ++p) points_[p] = seenFromPoint(stream, std::uint32_t(p));
+      } else {
+        gatherDistant(stream, first, last);
       }
     }
   });
   return !context.cancelled();
 }
 
-// Slabs [begin, end): hair into cells, cells into T by columns along the light.
-void LightDensityMap::accumulate(std::size_t begin, std::size_t end, const GridDeposit& deposit) {
-  constexpr long kRows = GridDeposit::kSlabRows;
-  const long n = 1L << options_.log2Size, mask = n - 1;
-  const auto cells = std::make_unique_for_overwrite<float[]>(deposit.slabCells());
-  std::vector<std::uint8_t> touched(deposit.slabRows());
-  Eigen::ArrayXXf sum(n, kRows), passed(n, kRows);
-  const long turn = first_[0] & mask;  // where in a row of the grid the first column lies
+void LightDensityMap::gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last) {
+  const double perCell = 1 / cell_;
+  const Vec3 x = perCell * alongRows(), y = perCell * acrossRows(), z = perCell * view_.forward;
+  for (std::uint64_t p = first; p < last; ++p) {
+    const Vec3 world = stream.strands().points[p].cast<double>();
+    const auto point = std::uint32_t(p);
+    const double weight = stream.opacityAt(point) * std::max(0.0, stream.widthAt(point)) * perCell;
+    points_[p] = {float(x.dot(world) - base_.x()), float(y.dot(world) - base_.y()),
+                  float(z.dot(world) - base_.z()), float(weight)};
+  }
+}
+
+GridPoint LightDensityMap::seenFromPoint(const FragmentStream& stream, std::uint32_t point) const {
+  const Vec3 world = stream.strands().points[point].cast<double>();
+  const double depth = (world - view_.eye).dot(view_.forward);
+  if (!(depth * inverseNear_ >= 1 - 1e-9)) return {0, 0, 0, -1};
+  const Vec3 c = cellsOf(world);
+  const int n = 1 << options_.log2Size;
+  if (!(c.x() >= 1 && c.x() < n - 1 && c.y() >= 1 && c.y() < n - 1)) return {0, 0, 0, -1};
+  const double cell = view_.texelAt(depth) * double(view_.size) / (n - 2);
+  const double weight = stream.opacityAt(point) * std::max(0.0, stream.widthAt(point)) / cell;
+  return {float(c.x()), float(c.y()), float(c.z()), float(weight)};
+}
+
+// Slabs [begin, end): hair into cells, cells into T by columns along the light, in place.
+void LightDensityMap::accumulate(std::size_t begin, std::size_t end) {
+  const std::size_t n = std::size_t(1) << options_.log2Size;
+  const int lanes = widestLanes();
   for (std::size_t slab = begin; slab < end; ++slab) {
-    std::ranges::fill(touched, std::uint8_t(0));
-    deposit.fill(int(slab), std::span(cells.get(), deposit.slabCells()), touched);
-    sum.setZero();
-    passed.setOnes();
-    for (long k = 0; k < n; ++k) {
-      for (long j = 0; j < kRows; ++j) {
-        const std::size_t at = std::size_t(k * kRows + j);
-        if (touched[at]) {
-          sum.col(j) += Eigen::Map<const Eigen::ArrayXf>(cells.get() + at * std::size_t(n), n);
-          passed.col(j) = (-sum.col(j)).exp();
-        }
-        const long row = first_[1] + long(slab) * kRows + j;
-        float* out = &values_[std::size_t((((first_[2] + k) & mask) * n + (row & mask)) * n)];
-        std::copy_n(passed.col(j).data(), n - turn, out + turn);
-        std::copy_n(passed.col(j).data() + (n - turn), turn, out);
-      }
+    const std::span<float> cells(values_.get() + slab * deposit_.slabCells(), deposit_.slabCells());
+    if (!deposit_.reaches(int(slab))) {
+      std::ranges::fill(cells, 1.0f);
+      continue;
     }
+    deposit_.fill(int(slab), cells, lanes);
+    light::transmittanceByColumns(cells.data(), n * GridDeposit::kSlabRows, n,
+                                  std::size_t(deposit_.first()[2]) & (n - 1), lanes);
   }
 }
 
@@ -115,9 +130,8 @@ Status LightDensityMap::update(const FragmentStream& stream, const Context& cont
   view_ = stream.view();
   for (int doubling = 0; doubling <= kMostDoublings; ++doubling) {
     if (!gather(stream, context)) break;
-    const GridDeposit deposit(points_, stream.strands().offsets, options_.log2Size,
-                              GridDeposit::Length::AcrossLast, context);
-    if (!deposit.fits()) {
+    deposit_.bin(points_, stream.strands().offsets, context);
+    if (!deposit_.fits()) {
       if (!options_.grows || view_.perspective) {
         return makeError(ErrorCode::TooLarge,
                          "the hair is longer than the light map's box: take larger cells");
@@ -125,10 +139,8 @@ Status LightDensityMap::update(const FragmentStream& stream, const Context& cont
       cell_ *= 2;
       continue;
     }
-    first_ = deposit.first();
-    constexpr std::size_t kSlabsAChunk = 2;
-    parallelFor(context, std::size_t(deposit.slabCount()), kSlabsAChunk,
-                [&](std::size_t begin, std::size_t end) { accumulate(begin, end, deposit); });
+    parallelFor(context, std::size_t(deposit_.slabCount()), 1,
+                [&](std::size_t begin, std::size_t end) { accumulate(begin, end); });
     dropped_ = stream.droppedStrands();
     if (context.cancelled()) break;
     return {};
@@ -141,10 +153,8 @@ Result<LightDensityMap> LightDensityMap::make(const FragmentStream& stream,
   if (options.log2Size < 3 || options.log2Size > 9 || !(options.cell >= 0 && std::isfinite(options.cell))) {
     return makeError(ErrorCode::InvalidArgument, "a light map has 8 … 512 cells a side, of positive size");
   }
-  LightDensityMap map;
+  LightDensityMap map(options);
   map.view_ = stream.view();
-  map.options_ = options;
-  map.values_.resize(std::size_t(1) << (3 * options.log2Size));
   map.fitCell(stream);
   COIF_TRY(map.update(stream, context));
   return map;
@@ -152,12 +162,13 @@ Result<LightDensityMap> LightDensityMap::make(const FragmentStream& stream,
 
 // T behind cell (i, j, k): 1 before the hair and beside the box, that of the last cell behind it.
 float LightDensityMap::face(long i, long j, long k) const {
-  const long n = 1L << options_.log2Size, mask = n - 1;
-  const auto outside = [&](long v, long first) { return v < first || v >= first + n; };
-  if (outside(i, first_[0]) || outside(j, first_[1]) || k < first_[2]) return 1;
-  k = std::min(k, first_[2] + n - 1);
-  return values_[((std::size_t(k & mask) * std::size_t(n) + std::size_t(j & mask)) * std::size_t(n)) +
-                 std::size_t(i & mask)];
+  const long n = 1L << options_.log2Size;
+  const auto& first = deposit_.first();
+  const auto outside = [&](long v, long least) { return v < least || v >= least + n; };
+  if (outside(i, first[0]) || outside(j, first[1]) || k < first[2]) return 1;
+  k = std::min(k, first[2] + n - 1);
+  const std::size_t slab = std::size_t(j & (n - 1)) / GridDeposit::kSlabRows;
+  return values_[slab * deposit_.slabCells() + deposit_.cellInSlab(i, j, k)];
 }
 
 double LightDensityMap::transmittance(const Vec3& world) const {

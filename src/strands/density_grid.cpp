@@ -1,106 +1,108 @@
 #include "coif/strands/density_grid.h"
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 
+#include "coif/base/lanes.h"
 #include "coif/base/parallel.h"
+#include "strands/deposit_lanes.h"
 
 namespace coif {
 namespace {
 
-constexpr std::size_t kPointsAChunk = 8192;
-constexpr double kFarthest = 1 << 30;  // in cells; forEachCell's range
-constexpr std::size_t kAhead = 8;      // segments
+constexpr std::size_t kStrandsAChunk = 256;
+constexpr float kFarthest = 1 << 30;  // in cells: whole numbers of them stay exact in long and int
 constexpr double kQuarterPi = 0.78539816339744831;
 
+/// x, y, z of points; their weights come along because four floats are one load.
 struct CellRange {
-  std::array<float, 3> lo{HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+  Eigen::Array4f lo = Eigen::Array4f::Constant(HUGE_VALF), hi = -lo;
   void add(const GridPoint& p) {
-    const float v[] = {p.x, p.y, p.z};
-    for (int d = 0; d < 3; ++d) lo[d] = std::min(lo[d], v[d]), hi[d] = std::max(hi[d], v[d]);
+    const Eigen::Map<const Eigen::Array4f> v(&p.x);
+    lo = lo.min(v), hi = hi.max(v);
   }
 };
+static_assert(sizeof(GridPoint) == 4 * sizeof(float));
 
 bool usable(const GridPoint& p) {
   return p.weight >= 0;
 }
 
-/// Marks where strands end: no segment begins there.
-std::vector<std::uint8_t> lastPoints(std::span<const std::uint64_t> offsets, std::size_t points) {
-  std::vector<std::uint8_t> last(points, 0);
-  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-    if (offsets[s + 1] > offsets[s]) last[offsets[s + 1] - 1] = 1;
-  }
-  return last;
-}
-
 }  // namespace
 
-GridDeposit::GridDeposit(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets,
-                         int log2Size, Length length, const Context& context)
-    : log2Size_(log2Size), length_(length) {
-  const std::size_t chunks = (points.size() + kPointsAChunk - 1) / kPointsAChunk;
-  std::vector<CellRange> ranges(chunks);
-  parallelFor(context, points.size(), kPointsAChunk, [&](std::size_t begin, std::size_t end) {
+GridDeposit::GridDeposit(int log2Size, Length length) : log2Size_(log2Size), length_(length) {}
+
+void GridDeposit::bin(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets,
+                      const Context& context) {
+  points_ = points;
+  first_ = {0, 0, 0};
+  fits_ = true;
+  const std::size_t strands = offsets.empty() ? 0 : offsets.size() - 1;
+  bins_.resize((strands + kStrandsAChunk - 1) / kStrandsAChunk);
+  std::vector<CellRange> ranges(bins_.size());
+  const int slabs = slabCount();
+  static_assert(kSlabRows == 8);
+  parallelFor(context, strands, kStrandsAChunk, [&](std::size_t begin, std::size_t end) {
+    auto& bins = bins_[begin / kStrandsAChunk];
+    bins.resize(std::size_t(slabs));
+    for (auto& bin : bins) bin.clear();
+    const std::uint64_t first = offsets[begin], count = offsets[end] - first;
+    // Ahead of what branches, so that it is done several at a time.
+    std::vector<int> slabOf(count);
     CellRange range;
-    for (std::size_t p = begin; p < end; ++p) {
+    for (std::uint64_t p = 0; p < count; ++p) {
+      const float y = std::min(kFarthest, std::max(-kFarthest, points[first + p].y));  // NaN becomes far
+      const int whole = int(y);
+      slabOf[p] = (whole - (y < float(whole))) >> 3;
+    }
+    for (std::uint64_t p = first; p < first + count; ++p) {
       if (usable(points[p])) range.add(points[p]);
     }
-    ranges[begin / kPointsAChunk] = range;
+    for (std::size_t s = begin; s < end; ++s) {
+      for (std::uint64_t p = offsets[s]; p + 1 < offsets[s + 1]; ++p) {
+        if (!usable(points[p]) || !usable(points[p + 1])) continue;
+        const int a = slabOf[p - first], b = slabOf[p + 1 - first];
+        bins[std::size_t(a & (slabs - 1))].push_back(std::uint32_t(p));
+        if (a == b) continue;
+        const int step = a < b ? 1 : -1, others = std::min(std::abs(b - a), slabs - 1);
+        for (int at = 1; at <= others; ++at) {
+          bins[std::size_t((a + at * step) & (slabs - 1))].push_back(std::uint32_t(p));
+        }
+      }
+    }
+    ranges[begin / kStrandsAChunk] = range;
   });
   CellRange all;
-  for (const CellRange& range : ranges) {
-    for (int d = 0; d < 3; ++d)
-      all.lo[d] = std::min(all.lo[d], range.lo[d]), all.hi[d] = std::max(all.hi[d], range.hi[d]);
-  }
+  for (const CellRange& range : ranges) all.lo = all.lo.min(range.lo), all.hi = all.hi.max(range.hi);
   if (!(all.lo[0] <= all.hi[0])) return;
   for (int d = 0; d < 3; ++d) {
-    if (!(double(all.lo[d]) > -kFarthest && double(all.hi[d]) < kFarthest)) {
+    if (!(all.lo[d] > -kFarthest && all.hi[d] < kFarthest)) {
       fits_ = false;
       return;
     }
-    first_[std::size_t(d)] = long(std::floor(all.lo[d])) - 1;
-    fits_ = fits_ && long(std::floor(all.hi[d])) - first_[std::size_t(d)] < (1L << log2Size_);
+    first_[std::size_t(d)] = floorToLong(all.lo[d]) - 1;
+    fits_ = fits_ && floorToLong(all.hi[d]) - first_[std::size_t(d)] < (1L << log2Size_);
   }
-  if (!fits_) return;
-  const std::vector<std::uint8_t> last = lastPoints(offsets, points.size());
-  bins_.resize(chunks);
-  const std::array<float, 3> origin{float(first_[0]), float(first_[1]), float(first_[2])};
-  const auto moved = [&](const GridPoint& p) {
-    return GridPoint{p.x - origin[0], p.y - origin[1], p.z - origin[2], p.weight};
-  };
-  parallelFor(context, points.size(), kPointsAChunk, [&](std::size_t begin, std::size_t end) {
-    auto& bins = bins_[begin / kPointsAChunk];
-    bins.resize(std::size_t(slabCount()));
-    for (std::size_t p = begin; p < end; ++p) {
-      if (last[p] || !usable(points[p]) || !usable(points[p + 1])) continue;
-      const Segment segment{moved(points[p]), moved(points[p + 1])};
-      const int from = int(std::min(segment.a.y, segment.b.y)) / kSlabRows;
-      const int to = int(std::max(segment.a.y, segment.b.y)) / kSlabRows;
-      for (int slab = from; slab <= to; ++slab) bins[std::size_t(slab)].push_back(segment);
-    }
-  });
 }
 
-void GridDeposit::fill(int slab, std::span<float> cells, std::span<std::uint8_t> touched) const {
-  const long size = 1L << log2Size_, rowBegin = long(slab) * kSlabRows;
-  for (const auto& chunk : bins_) {
-    for (const auto& [u, v] : chunk[std::size_t(slab)]) {
-      const Vec3f a(u.x, u.y, u.z), b(v.x, v.y, v.z);
-      Vec3f d = b - a;
-      if (length_ == Length::AcrossLast) d.z() = 0;
-      const float whole = d.norm(), weight = u.weight * whole, grow = 0.5f * (v.weight - u.weight) * whole;
-      forEachCell(a, b, [&](long i, long j, long k, float from, float to) {
-        const long row = j - rowBegin;
-        if (row < 0 || row >= kSlabRows) return;
-        const std::size_t at = std::size_t(k * kSlabRows + row);
-        float* line = &cells[at << log2Size_];
-        if (!touched[at]) {
-          touched[at] = 1;
-          std::fill_n(line, size, 0.0f);
-        }
-        line[i] += (weight + (from + to) * grow) * (to - from);
-      });
-    }
+bool GridDeposit::reaches(int slab) const {
+  return std::ranges::any_of(bins_, [&](const auto& bins) { return !bins[std::size_t(slab)].empty(); });
+}
+
+void GridDeposit::fill(int slab, std::span<float> cells, int lanes) const {
+  std::ranges::fill(cells, 0.0f);
+  DepositTask task;
+  task.points = points_;
+  for (int d = 0; d < 3; ++d) {
+    task.origin[d] = float(first_[std::size_t(d)] & ~((1L << log2Size_) - 1));
+  }
+  task.log2Size = log2Size_;
+  task.rowBegin = slab * kSlabRows;
+  task.acrossLast = length_ == Length::AcrossLast;
+  task.cells = cells.data();
+  for (const auto& bins : bins_) {
+    task.segments = bins[std::size_t(slab)];
+    depositSegments(task, lanes > 0 ? lanes : widestLanes());
   }
 }
 
@@ -125,7 +127,8 @@ Result<DensityGrid> depositHairVolume(const StrandSet& strands, const GridFrame&
         points[p].weight = -1;
     }
   });
-  const GridDeposit deposit(points, strands.offsets, frame.log2Size, GridDeposit::Length::Whole, context);
+  GridDeposit deposit(frame.log2Size, GridDeposit::Length::Whole);
+  deposit.bin(points, strands.offsets, context);
   if (!deposit.fits()) {
     return makeError(ErrorCode::TooLarge,
                      "the hair is longer than the density grid's box: take larger cells");
@@ -134,18 +137,13 @@ Result<DensityGrid> depositHairVolume(const StrandSet& strands, const GridFrame&
   const long size = frame.size();
   parallelFor(context, std::size_t(deposit.slabCount()), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<float> cells(deposit.slabCells());
-    std::vector<std::uint8_t> touched(deposit.slabRows());
     for (std::size_t slab = begin; slab < end; ++slab) {
-      std::ranges::fill(touched, std::uint8_t(0));
-      deposit.fill(int(slab), cells, touched);
-      for (std::size_t row = 0; row < touched.size(); ++row) {
-        if (!touched[row]) continue;
-        const long j =
-            deposit.first()[1] + long(slab * GridDeposit::kSlabRows + row % GridDeposit::kSlabRows);
-        const long k = deposit.first()[2] + long(row / GridDeposit::kSlabRows);
-        for (long i = 0; i < size; ++i) {
-          grid.values[frame.index(deposit.first()[0] + i, j, k)] =
-              cells[row * std::size_t(size) + std::size_t(i)];
+      if (!deposit.reaches(int(slab))) continue;
+      deposit.fill(int(slab), cells);
+      for (long k = 0; k < size; ++k) {
+        for (long row = 0; row < GridDeposit::kSlabRows; ++row) {
+          const long j = long(slab) * GridDeposit::kSlabRows + row;
+          std::copy_n(&cells[deposit.cellInSlab(0, j, k)], size, &grid.values[frame.index(0, j, k)]);
         }
       }
     }

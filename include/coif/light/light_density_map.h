@@ -8,7 +8,7 @@
 // takes cells even in its map's plane and in 1 / depth: straight hairs stay straight there.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <vector>
 
 #include "coif/light/fragments.h"
@@ -34,25 +34,32 @@ class LightDensityMap {
 
   double transmittance(const Vec3& world) const;
   double cell() const { return cell_; }
-  std::size_t bytes() const { return values_.size() * sizeof(float); }
+  std::size_t bytes() const { return cells() * sizeof(float); }
   std::size_t droppedStrands() const { return dropped_; }
 
  private:
+  explicit LightDensityMap(const LightDensityOptions& options);
+  std::size_t cells() const { return std::size_t(1) << (3 * options_.log2Size); }
+  const Vec3& alongRows() const { return rowsAlongRight_ ? view_.right : view_.up; }
+  const Vec3& acrossRows() const { return rowsAlongRight_ ? view_.up : view_.right; }
   Vec3 cellsOf(const Vec3& world) const;
   bool gather(const FragmentStream& stream, const Context& context);
+  void gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last);
+  GridPoint seenFromPoint(const FragmentStream& stream, std::uint32_t point) const;
   void fitCell(const FragmentStream& stream);
-  void accumulate(std::size_t begin, std::size_t end, const GridDeposit& deposit);
+  void accumulate(std::size_t begin, std::size_t end);
   float face(long i, long j, long k) const;
 
   LightView view_;
   LightDensityOptions options_;
   double cell_ = 1;
-  Vec3 low_ = Vec3::Zero();   ///< corner of the hair's box in the light's frame when the map was made
+  bool rowsAlongRight_ = false;  ///< of a distant light's grid, rather than along view.up
+  Vec3 low_ = Vec3::Zero();      ///< corner of the hair's box in the light's frame when the map was made
   Vec3 base_ = Vec3::Zero();  ///< whole cells, taken off so that floats stay fine far from the scene's origin
   double inverseNear_ = 1, inverseFar_ = 0;  ///< of a point light's depth
-  std::array<long, 3> first_{0, 0, 0};
   std::vector<GridPoint> points_;
-  std::vector<float> values_;  ///< T on the exit faces, GridFrame::index order
+  GridDeposit deposit_;
+  std::unique_ptr<float[]> values_;  ///< T on the exit faces; slab by slab, GridDeposit::cellInSlab
   std::size_t dropped_ = 0;
 };
 

@@ -1,9 +1,8 @@
 // How much hair is where: the grid that light (Bertails et al. 2005) and dynamics share.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -50,40 +49,42 @@ struct GridPoint {
 /// Clips segments exactly at the cells' faces and adds weight × length to every cell they pass; by slabs of
 /// rows that threads can fill apart from each other. Weight is linear along a segment; length is measured
 /// along all axes, or across the last one ("along the light") only. The sum over all cells is Σ weight ×
-/// length to float's rounding.
+/// length to float's rounding. Addresses wrap: cell (i, j, k) is that of its indices modulo n.
 class GridDeposit {
  public:
   static constexpr int kSlabRows = 8;
   enum class Length { Whole, AcrossLast };
 
-  /// `points` and `offsets` as in StrandSet; read once.
-  GridDeposit(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets, int log2Size,
-              Length length, const Context& context = {});
+  GridDeposit(int log2Size, Length length);
+  /// Takes segments; `points` and `offsets` as in StrandSet, the points to outlive the last fill(). May be
+  /// called again, in the same memory.
+  void bin(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets, const Context& context);
 
   /// Low corner of the cells that hair is in, less one guard cell; zero without hair.
   const std::array<long, 3>& first() const { return first_; }
   /// Whether one turn of the addresses holds all cells that hair is in, without two sharing one.
   bool fits() const { return fits_; }
   int slabCount() const { return (1 << log2Size_) / kSlabRows; }
-  /// Floats that a slab takes, and flags: kSlabRows · n² and kSlabRows · n.
+  /// Floats that a slab takes: kSlabRows · n².
   std::size_t slabCells() const { return std::size_t(kSlabRows) << (2 * log2Size_); }
-  std::size_t slabRows() const { return std::size_t(kSlabRows) << log2Size_; }
-  /// Rows j = slab · kSlabRows + 0 … kSlabRows − 1, counted from first() and not wrapped, into a slab of its
-  /// own: row (k, j) begins at (k · kSlabRows + j mod kSlabRows) · n. `touched`, zero when called, is set for
-  /// rows that hair is in; `cells` of others are left as they were. Apart from the grid, because a column of
-  /// it falls onto few lines of the cache. Requires fits().
-  void fill(int slab, std::span<float> cells, std::span<std::uint8_t> touched) const;
+  /// Index of a cell in its slab, which is (j mod n) / kSlabRows.
+  std::size_t cellInSlab(long i, long j, long k) const {
+    const long mask = (1L << log2Size_) - 1;
+    return (std::size_t((k & mask) * kSlabRows + (j & (kSlabRows - 1))) << log2Size_) | std::size_t(i & mask);
+  }
+  /// Whether there may be hair in a slab.
+  bool reaches(int slab) const;
+  /// All of a slab's cells. `lanes` (4, 8, 16; 0: as many as the processor has) changes no byte. Requires
+  /// fits().
+  void fill(int slab, std::span<float> cells, int lanes = 0) const;
 
  private:
-  /// Ends relative to first(), in the order of the points; copied, so that a slab reads them in one go.
-  struct Segment {
-    GridPoint a, b;
-  };
   int log2Size_ = 7;
   Length length_ = Length::Whole;
   std::array<long, 3> first_{0, 0, 0};
   bool fits_ = true;
-  std::vector<std::vector<std::vector<Segment>>> bins_;  ///< chunk, slab
+  std::span<const GridPoint> points_;
+  std::vector<std::vector<std::vector<std::uint32_t>>> bins_;  ///< chunk, slab: first points of segments
 };
 
 struct DensityReport {
@@ -102,39 +103,6 @@ template <class Real>
 long floorToLong(Real v) {
   const long truncated = long(v);
   return truncated - (v < Real(truncated));
-}
-
-/// visit(i, j, k, from, to) for every cell that the segment a → b passes, in order; [from, to] is the part of
-/// it, in [0, 1]. Coordinates in cells, within ± 2³⁰.
-template <class Real, class Visit>
-void forEachCell(const Eigen::Matrix<Real, 3, 1>& a, const Eigen::Matrix<Real, 3, 1>& b, Visit&& visit) {
-  long cell[3], step[3];
-  int left[3];
-  Real next[3], stride[3];
-  int count = 1;
-  for (int d = 0; d < 3; ++d) {
-    cell[d] = floorToLong(a[d]);
-    const long steps = floorToLong(b[d]) - cell[d];
-    step[d] = steps < 0 ? -1 : 1;
-    left[d] = int(steps < 0 ? -steps : steps);
-    count += left[d];
-    next[d] = 2, stride[d] = 0;
-    if (left[d] == 0) continue;
-    const Real perDelta = 1 / (b[d] - a[d]);
-    stride[d] = std::abs(perDelta);
-    next[d] = (Real(cell[d] + (steps > 0)) - a[d]) * perDelta;
-  }
-  // The number of faces is known beforehand, so rounding can displace a crossing but never lose one.
-  Real from = 0;
-  for (; count > 1; --count) {
-    const int d = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : (next[1] <= next[2] ? 1 : 2);
-    const Real to = std::clamp(next[d], from, Real(1));
-    visit(cell[0], cell[1], cell[2], from, to);
-    from = to;
-    cell[d] += step[d];
-    next[d] = --left[d] > 0 ? next[d] + stride[d] : 2;
-  }
-  visit(cell[0], cell[1], cell[2], from, Real(1));
 }
 
 }  // namespace coif
