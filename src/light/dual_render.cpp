@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "coif/base/parallel.h"
-#include "coif/base/random.h"
 
 namespace coif {
 namespace {
@@ -12,11 +12,13 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // A fibre's frame: x along it.
-struct FibreFrame {
-  Vec3 x, y, z;
-  explicit FibreFrame(const Vec3& tangent) : x(tangent), y(tangent.unitOrthogonal()), z(tangent.cross(y)) {}
-  Vec3 local(const Vec3& w) const { return Vec3(w.dot(x), w.dot(y), w.dot(z)); }
-};
+Mat3 frameOfFibre(const Vec3& tangent) {
+  Mat3 frame;
+  frame.col(0) = tangent;
+  frame.col(1) = tangent.unitOrthogonal();
+  frame.col(2) = tangent.cross(frame.col(1));
+  return frame;
+}
 
 class Renderer {
  public:
@@ -26,13 +28,14 @@ class Renderer {
 
   void row(int y, FloatImage& image) const {
     std::vector<StrandMeeting> meetings;
+    SurroundingLight around;
     for (int x = 0; x < options_.width; ++x) {
       Eigen::Vector4d sum = Eigen::Vector4d::Zero();
       const CounterRandom random(options_.seed,
                                  std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
       for (int s = 0; s < options_.samplesPerPixel; ++s) {
         sum += sample(x + random.uniform(2 * std::uint64_t(s)), y + random.uniform(2 * std::uint64_t(s) + 1),
-                      meetings);
+                      random.child(std::uint64_t(s)), meetings, around);
       }
       float* pixel = image.at(x, y);
       for (int c = 0; c < 4; ++c) pixel[c] = float(sum[c] / options_.samplesPerPixel);
@@ -40,7 +43,8 @@ class Renderer {
   }
 
  private:
-  Eigen::Vector4d sample(double x, double y, std::vector<StrandMeeting>& meetings) const {
+  Eigen::Vector4d sample(double x, double y, const CounterRandom& random,
+                         std::vector<StrandMeeting>& meetings, SurroundingLight& around) const {
     const double w = options_.width, h = options_.height;
     const Vec3 direction =
         (frame_.forward + frame_.slopeY * ((2 * x - w) * frame_.right + (h - 2 * y) * frame_.up) / h)
@@ -49,15 +53,24 @@ class Renderer {
     Eigen::Vector4d out(0, 0, 0, head || !meetings.empty() ? 1 : 0);
     if (meetings.empty()) return out;
     const StrandMeeting first = meetings.front();
-    const FibreFrame fibre(first.tangent);
-    const Vec3 point = frame_.eye + first.distance * direction, wo = fibre.local(-direction);
+    const Mat3 fibre = frameOfFibre(first.tangent), local = fibre.transpose();
+    const Vec3 point = frame_.eye + first.distance * direction, wo = -(local * direction);
     for (std::size_t l = 0; l < lights_.size(); ++l) {
-      const ForwardScattering arriving =
-          options_.maps.empty()
-              ? shootForward(*scene_.strands, *scene_.hair, point, first.strand, lights_[l].toLight, meetings)
-              : options_.maps[l]->at(point);
-      out.head<3>() += scene_.hair->evaluate(fibre.local(lights_[l].toLight), wo, arriving, first.h)
-                           .cwiseProduct(lights_[l].irradiance);
+      const Vec3& toLight = lights_[l].toLight;
+      const Vec3 wi = local * toLight;
+      Vec3 radiance;
+      if (options_.maps.empty() && options_.surroundingRays > 0) {
+        shootAround(*scene_.strands, *scene_.hair, point, first.strand, fibre, toLight,
+                    options_.surroundingRays, random.child(l), meetings, around);
+        radiance = scene_.hair->evaluate(wi, wo, around, first.h);
+      } else {
+        const ForwardScattering arriving =
+            options_.maps.empty()
+                ? shootForward(*scene_.strands, *scene_.hair, point, first.strand, toLight, meetings)
+                : options_.maps[l]->at(point, {first.tangent, 2 * first.radius});
+        radiance = scene_.hair->evaluate(wi, wo, arriving, first.h);
+      }
+      out.head<3>() += radiance.cwiseProduct(lights_[l].irradiance);
     }
     return out;
   }
@@ -92,12 +105,47 @@ ForwardScattering shootForward(const StrandShooter& strands, const DualScatterin
   return path.result();
 }
 
+void shootAround(const StrandShooter& strands, const DualScattering& hair, const Vec3& point,
+                 std::uint32_t strand, const Mat3& fibre, const Vec3& toLight, int rays,
+                 const CounterRandom& random, std::vector<StrandMeeting>& meetings, SurroundingLight& out) {
+  const Vec3 wi = fibre.transpose() * toLight;
+  const double theta = std::asin(std::clamp(wi.x(), -1.0, 1.0)), azimuth = std::atan2(wi.z(), wi.y());
+  // Even over half the circle, one a stratum.
+  const auto onCone = [&](double inclination, double middle, int ray, std::uint64_t number) -> Vec3 {
+    const double phi = middle + std::numbers::pi * ((ray + random.uniform(number)) / rays - 0.5);
+    return {std::sin(inclination), std::cos(inclination) * std::cos(phi),
+            std::cos(inclination) * std::sin(phi)};
+  };
+  const bool hidden = strands.shoot(point, toLight, kFar, meetings, strand);
+  out.directFraction = hidden || !meetings.empty() ? 0 : 1;
+  out.arrivals.assign(std::size_t(rays), {});
+  out.backscatter = Vec3::Zero();
+  for (int r = 0; r < rays; ++r) {
+    const auto number = 2 * std::uint64_t(r);
+    SurroundingLight::Arrival& arrival = out.arrivals[std::size_t(r)];
+    arrival.direction = onCone(theta, azimuth, r, number);
+    strands.shoot(point, fibre * arrival.direction, kFar, meetings, strand);
+    if (!meetings.empty()) {
+      const StrandMeeting last = meetings.front();
+      const ForwardScattering there = shootForward(
+          strands, hair, point + last.distance * (fibre * arrival.direction), last.strand, toLight, meetings);
+      const double at = last.inclinationRad(toLight);
+      arrival.transmittance = there.transmittance.cwiseProduct(hair.forwardAttenuation(at));
+      arrival.variance = there.variance + hair.forwardVariance(at);
+    }
+    strands.shoot(point, fibre * onCone(-theta, azimuth + std::numbers::pi, r, number + 1), kFar, meetings,
+                  strand);
+    out.backscatter += hair.backscatterShare(theta, double(meetings.size())) / rays;
+  }
+}
+
 Result<FloatImage> renderDualScattering(const DualRenderScene& scene, const DualRenderOptions& options,
                                         const Context& context) {
   if (scene.strands == nullptr || scene.hair == nullptr || options.width < 1 || options.height < 1 ||
       options.width > kLargestPictureSide || options.height > kLargestPictureSide ||
-      options.samplesPerPixel < 1) {
-    return makeError(ErrorCode::InvalidArgument, "dual scattering needs strands, hair, a size and samples");
+      options.samplesPerPixel < 1 || options.surroundingRays < 0) {
+    return makeError(ErrorCode::InvalidArgument,
+                     "dual scattering needs strands, hair, a size, samples and no negative number of rays");
   }
   COIF_ASSIGN(const CameraFrame frame, frameOf(scene.camera));
   std::vector<ShiningLight> lights = shiningLights(scene.lights, frame);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dual_tables.h"
@@ -123,6 +124,41 @@ Vec3 DualScattering::shade(const Vec3& wi, const Vec3& wo, const ForwardScatteri
   if (scattered.maxCoeff() > 0) {
     out += scattered.cwiseProduct(single(wi, wo, variance, true) +
                                   parameters_.backwardDensity * back(wi, wo, variance, true));
+  }
+  return out;
+}
+
+Vec3 DualScattering::backscatterShare(double theta, double behind) const {
+  const Vec3 f = forwardAttenuation(theta);
+  const Vec3 b = overInclination(tables_.backwardAttenuation, tables_.inclinations, theta);
+  Vec3 share;
+  for (int c = 0; c < 3; ++c) {
+    const double endless = backscatterOfPile(f[c], b[c], std::numeric_limits<double>::infinity());
+    share[c] = endless > 0 ? std::min(1.0, backscatterOfPile(f[c], b[c], behind) / endless) : 0;
+  }
+  return share;
+}
+
+Vec3 DualScattering::evaluate(const Vec3& wi, const Vec3& wo, const SurroundingLight& arriving,
+                              double h) const {
+  if (!wi.allFinite() || !wo.allFinite()) return Vec3::Zero();
+  Vec3 out = Vec3::Zero(), scattered = Vec3::Zero(), spread = Vec3::Zero();
+  const double ray = parameters_.forwardDensity / double(std::max<std::size_t>(1, arriving.arrivals.size()));
+  for (const SurroundingLight::Arrival& one : arriving.arrivals) {
+    if (!(one.transmittance.maxCoeff() > 0)) continue;
+    out +=
+        ray * one.transmittance.cwiseProduct(single(one.direction, wo, one.variance.cwiseMin(10.0), false));
+    scattered += ray * one.transmittance;
+    spread += ray * one.transmittance.cwiseProduct(one.variance);
+  }
+  const Vec3 returned = parameters_.backwardDensity * arriving.backscatter;
+  if (arriving.directFraction > 0) {
+    out += arriving.directFraction *
+           (fibre_.evaluate(wi, wo, h) + returned.cwiseProduct(back(wi, wo, Vec3::Zero(), false)));
+  }
+  if (scattered.maxCoeff() > 0) {
+    const Vec3 variance = spread.cwiseQuotient(scattered.cwiseMax(1e-12)).cwiseMin(10.0);
+    out += scattered.cwiseProduct(returned).cwiseProduct(back(wi, wo, variance, true));
   }
   return out;
 }

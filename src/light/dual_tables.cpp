@@ -155,8 +155,8 @@ DualScatteringTables buildDualTables(const FibreScattering& fibre, DualFormulas 
   out.azimuthalScattered.resize(out.azimuthal.size());
   fillAzimuthal(fibre, out);
   fillScattered(out);
-  for (auto* table : {&out.forwardAttenuation, &out.forwardVariance, &out.backscatterAttenuation,
-                      &out.backscatterShift, &out.backscatterVariance}) {
+  for (auto* table : {&out.forwardAttenuation, &out.forwardVariance, &out.backwardAttenuation,
+                      &out.backscatterAttenuation, &out.backscatterShift, &out.backscatterVariance}) {
     table->resize(std::size_t(3) * kInclinations);
   }
   for (int i = 0; i < kInclinations; ++i) {
@@ -167,6 +167,7 @@ DualScatteringTables buildDualTables(const FibreScattering& fibre, DualFormulas 
       const Backscatter back = backscatterOf(means, formulas);
       out.forwardAttenuation[at] = float(means.attenuationForward);
       out.forwardVariance[at] = float(means.varianceForward);
+      out.backwardAttenuation[at] = float(means.attenuationBackward);
       out.backscatterAttenuation[at] = float(back.attenuation);
       out.backscatterShift[at] = float(back.shift);
       out.backscatterVariance[at] = float(back.variance);
@@ -193,11 +194,17 @@ Backscatter printedBackscatter(const FibreMeans& m) {
   return out;
 }
 
+// √Q and the reflectance R of endlessly many layers.
+struct EndlessPile {
+  double root, reflected;
+  EndlessPile(double f, double b)
+      : root(std::sqrt(std::max(kLossAtLeast, 1 - f - b) * (1 - b + f) * (1 + b - f) * (1 + b + f))),
+        reflected(2 * b / (1 + b * b - f * f + root)) {}
+};
+
 Backscatter correctedBackscatter(const FibreMeans& m) {
   const double f = m.attenuationForward, b = m.attenuationBackward;
-  const double loss = std::max(kLossAtLeast, 1 - f - b);
-  const double root = std::sqrt(loss * (1 - b + f) * (1 + b - f) * (1 + b + f));
-  const double reflected = 2 * b / (1 + b * b - f * f + root);
+  const auto [root, reflected] = EndlessPile(f, b);
   Backscatter out;
   // b R² − (1 + b² − f²) R + b = 0, so R − b = f² R / (1 − b R): no difference of nearly equal numbers.
   out.attenuation = f * f * reflected / (1 - b * reflected);
@@ -225,6 +232,16 @@ Backscatter backscatterOf(const FibreMeans& fibre, DualFormulas formulas) {
   out.shift = std::clamp(out.shift, -kShiftAtMost, kShiftAtMost);
   out.variance = std::clamp(out.variance, 1e-8, kVarianceAtMost);
   return out;
+}
+
+double backscatterOfPile(double attenuationForward, double attenuationBackward, double behind) {
+  const double held = std::max(1.0, attenuationForward + attenuationBackward);
+  const double f = std::max(0.0, attenuationForward) / held, b = std::max(0.0, attenuationBackward) / held;
+  const double reflected = EndlessPile(f, b).reflected;
+  const double passed = f / (1 - b * reflected);  // from layer to layer, endlessly many of them behind
+  const double decay = std::pow(passed, 2 * (std::max(0.0, behind) + 1));
+  const double pile = reflected * (1 - decay) / (1 - reflected * reflected * decay);
+  return std::max(0.0, pile - b);
 }
 
 }  // namespace coif

@@ -8,21 +8,22 @@ namespace {
 
 constexpr int kChannels = 6;  // forward depth of R, G, B; variance of R, G, B
 
-// What one fibre does to the light that meets its texel.
-void addFragment(const StrandSet& strands, const DualScattering& hair, const LightView& view,
-                 const Fragment& fragment, std::span<float> out) {
-  const Vec3 a = strands.points[fragment.point].cast<double>();
-  const Vec3 b = strands.points[fragment.point + 1].cast<double>();
-  const Vec3 at = a + double(fragment.along) * (b - a);
-  const Vec3 toLight = view.perspective ? (view.eye - at).normalized() : Vec3(-view.forward);
-  const double theta = std::asin(std::clamp((b - a).normalized().dot(toLight), -1.0, 1.0));
+// What a fibre that covers `alpha` does to the light that meets its texel.
+std::array<float, kChannels> valuesOf(const DualScattering& hair, const Vec3& tangent, const Vec3& toLight,
+                                      double alpha) {
+  const double theta = std::asin(std::clamp(tangent.dot(toLight), -1.0, 1.0));
   const Vec3 forward = hair.forwardAttenuation(theta), variance = hair.forwardVariance(theta);
-  const double alpha = fragment.alpha;
-  for (int c = 0; c < 3; ++c) {
-    const double left = 1 - alpha * (1 - forward[c]);
-    out[std::size_t(c)] = float(-std::log(std::max(left, 1e-7)));
-    out[std::size_t(c) + 3] = float(alpha * forward[c] * variance[c] / std::max(left, 1e-7));
+  std::array<float, kChannels> out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double passed = forward[long(c)], left = std::max(1 - alpha * (1 - passed), 1e-7);
+    out[c] = float(-std::log(left));
+    out[c + 3] = float(alpha * passed * variance[long(c)] / left);
   }
+  return out;
+}
+
+Vec3 towardsLight(const LightView& view, const Vec3& from) {
+  return view.perspective ? (view.eye - from).normalized() : Vec3(-view.forward);
 }
 
 }  // namespace
@@ -39,29 +40,67 @@ Result<ForwardScatteringMap> ForwardScatteringMap::build(const StrandSet& strand
   ChannelSource source;
   source.count = kChannels;
   source.fill = [&](const Fragment& fragment, std::span<float> out) {
-    addFragment(strands, hair, view, fragment, out);
+    const Vec3 a = strands.points[fragment.point].cast<double>();
+    const Vec3 d = strands.points[fragment.point + 1].cast<double>() - a;
+    const Vec3 toLight = towardsLight(view, a + double(fragment.along) * d);
+    std::ranges::copy(valuesOf(hair, d.normalized(), toLight, double(fragment.alpha)), out.begin());
   };
   auto map = buildVisibility(*stream, options, source, context);
   if (!map) return map.error();
-  return ForwardScatteringMap(std::move(map).value());
+  return ForwardScatteringMap(std::move(map).value(), hair);
 }
 
-ForwardScattering ForwardScatteringMap::at(const Vec3& world) const {
-  std::array<float, kChannels + 1> sums{};
-  map_->sums(world, sums);
+// A hair's own fragments, some of them in front of the point for no other reason than that it lies aslant in
+// its texels, and what a layer that both are in smears.
+void ForwardScatteringMap::takeOut(const Vec3& world, const OwnHair& own,
+                                   std::span<VisibilityMap::Tap> taps) const {
+  constexpr double kReach = 2.5;  // texels; a query mixes what lies within one and a half
+  const LightView& view = map_->view();
+  const Vec3 toLight = towardsLight(view, world);
+  const double depth = view.project(world).z(), texel = view.texelAt(depth);
+  const double across = (own.tangent - own.tangent.dot(toLight) * toLight).norm();
+  if (!(across > 1e-6) || !(texel > 0)) return;  // along the light: no fragments
+  const Vec3 reach = kReach * texel / across * own.tangent;
+  MapSegment segment;
+  if (!segment.set(view, world - reach, world + reach)) return;
+  segment.rasterize(view.size, 0, view.size, [&](int x, int y, double at, double, double stretch) {
+    const std::size_t here = std::size_t(y) * std::size_t(view.size) + std::size_t(x);
+    for (VisibilityMap::Tap& tap : taps) {
+      if (tap.texel != here) continue;
+      const double share = map_->shareInFront(here, at, depth);
+      if (!(share > 0)) continue;
+      const double alpha = std::min(own.coverage * stretch / view.texelAt(at), double(kGreatestAlpha));
+      const auto values = valuesOf(*hair_, own.tangent, toLight, alpha);
+      tap.sums[0] = std::max(0.0, tap.sums[0] - share * double(opticalDepthOf(float(alpha))));
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        tap.sums[c + 1] = std::max(0.0, tap.sums[c + 1] - share * double(values[c]));
+      }
+    }
+  });
+}
+
+ForwardScattering ForwardScatteringMap::at(const Vec3& world, const OwnHair& own) const {
   ForwardScattering out;
-  const double unblocked = std::exp(-double(sums[0]));
-  out.directFraction = map_->transmittance(world);
-  // What an opaque body in the way leaves of both.
-  const double open = sums[0] < 30
-                          ? std::min(1.0, out.directFraction / unblocked)
-                          : (map_->options().opaque == nullptr || out.directFraction > 0 ? 1.0 : 0.0);
+  const OpaqueMap* opaque = map_->options().opaque;
+  if (opaque != nullptr && opaque->blocks(world)) return {0, Vec3::Zero(), Vec3::Zero()};
+  std::array<VisibilityMap::Tap, 4> taps;
+  const std::span found = std::span(taps).first(std::size_t(map_->tapsAt(world, taps)));
+  if (own.coverage > 0) takeOut(world, own, found);
+  Vec3 spread = Vec3::Zero();
+  for (const VisibilityMap::Tap& tap : found) {
+    out.directFraction -= tap.weight * -std::expm1(-tap.sums[0]);
+    for (int c = 0; c < 3; ++c) {
+      const double lost = -std::expm1(-tap.sums[std::size_t(c) + 1]);
+      out.transmittance[c] -= tap.weight * lost;
+      spread[c] += tap.weight * (1 - lost) * tap.sums[std::size_t(c) + 4];
+    }
+  }
+  out.directFraction = std::clamp(out.directFraction, 0.0, 1.0);
   for (int c = 0; c < 3; ++c) {
-    const double all = std::exp(-double(sums[std::size_t(c) + 1]));
-    out.transmittance[c] = open * all;
-    const double scattered = all - unblocked;
+    out.transmittance[c] = std::clamp(out.transmittance[c], 0.0, 1.0);
     // The sum is the mean over direct light, which has none, and scattered light.
-    out.variance[c] = scattered > 1e-9 * all ? sums[std::size_t(c) + 4] * all / scattered : 0;
+    const double scattered = out.transmittance[c] - out.directFraction;
+    out.variance[c] = scattered > 1e-9 * out.transmittance[c] ? spread[c] / scattered : 0;
   }
   return out;
 }

@@ -46,6 +46,14 @@ class LayeredMap : public VisibilityMap {
 
   double bytesPerTexel() const override { return 4.0 * double(stride_ + (first_.empty() ? 0 : 1)); }
 
+  double shareInFront(std::size_t texel, double fragmentDepth, double depth) const override {
+    const std::size_t last = ends_.size() - 1;
+    const double d = depth - begin(texel);
+    const std::size_t layer = std::min(layerOf(d), last),
+                      own = std::min(layerOf(fragmentDepth - begin(texel)), last);
+    return layer == own ? partOf(layer, d) : own < layer ? 1 : 0;
+  }
+
   TransmittanceBound aPosterioriBound() const override {
     const std::size_t width = std::size_t(channels());
     double weighted = 0, weight = 0, worst = 0;
@@ -70,8 +78,7 @@ class LayeredMap : public VisibilityMap {
       return;
     }
     const std::size_t layer = std::min(layerOf(d), ends_.size() - 1);
-    const double from = layer == 0 ? 0 : ends_[layer - 1];
-    const double part = std::min(1.0, (d - from) / (ends_[layer] - from));
+    const double part = partOf(layer, d);
     const float* at = &sums_[texel * stride_ + layer * out.size()];
     for (std::size_t c = 0; c < out.size(); ++c) {
       const double behind = at[c], before = layer == 0 ? 0.0 : double(*(at + c - out.size()));
@@ -93,6 +100,12 @@ class LayeredMap : public VisibilityMap {
   /// ends_.size() past the last.
   std::size_t layerOf(double d) const {
     return std::size_t(std::upper_bound(ends_.begin(), ends_.end(), d) - ends_.begin());
+  }
+
+  /// Of a layer, in front of a depth.
+  double partOf(std::size_t layer, double d) const {
+    const double from = layer == 0 ? 0 : ends_[layer - 1];
+    return std::clamp((d - from) / (ends_[layer] - from), 0.0, 1.0);
   }
 
   std::vector<double> ends_;

@@ -167,6 +167,24 @@ void VisibilityMap::sums(const Vec3& world, std::span<float> result) const {
     result[c] = float(mixed[c]);
 }
 
+int VisibilityMap::tapsAt(const Vec3& world, std::array<Tap, 4>& out) const {
+  const Vec3 p = view_.project(world);
+  double own = 1;
+  int count = 0;
+  if (ownTransmittance(world, own)) return 0;
+  taps(p, [&](std::size_t texel, double weight) {
+    Tap& tap = out[std::size_t(count++)];
+    tap.texel = texel;
+    tap.weight = weight;
+    sumsAt(texel, p.z(), std::span(tap.sums).first(std::size_t(channels_)));
+  });
+  return count;
+}
+
+double VisibilityMap::shareInFront(std::size_t, double fragmentDepth, double depth) const {
+  return fragmentDepth < depth ? 1 : 0;
+}
+
 double VisibilityMap::boundAt(const Vec3& world) const {
   const Vec3 p = view_.project(world);
   double bound = 0;

@@ -67,6 +67,81 @@ TEST(DualRender, SingleScatteringIsThePathTracers) {
   EXPECT_LT((mine - traced->mean).cwiseAbs().maxCoeff(), 2 * traced->confidence95.maxCoeff());
 }
 
+// Parallel fibres along x, a square of them: what one knows of the hair around it.
+struct Square {
+  static constexpr int kSide = 41;
+  StrandSet strands;
+  FibreParameters fibre;
+  Square() {
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const float y = float(i % kSide) - kSide / 2, z = float(i / kSide) - kSide / 2;
+      addStrand(strands, {Vec3f(-200, y, z), Vec3f(200, y, z)}, 0.5f);
+    }
+    fibre.absorption = Vec3(0.1, 0.2, 0.4);
+  }
+  static std::uint32_t at(int y, int z) { return std::uint32_t((z + kSide / 2) * kSide + y + kSide / 2); }
+};
+
+SurroundingLight around(const StrandShooter& strands, const DualScattering& hair, int y, int z,
+                        const Vec3& toLight) {
+  std::vector<StrandMeeting> meetings;
+  SurroundingLight out;
+  shootAround(strands, hair, Vec3(0, y, z), Square::at(y, z), Mat3::Identity(), toLight, 64,
+              CounterRandom(3, 0), meetings, out);
+  return out;
+}
+
+double arriving(const SurroundingLight& light) {
+  double sum = 0;
+  for (const auto& one : light.arrivals) sum += one.transmittance.x() / double(light.arrivals.size());
+  return sum;
+}
+
+TEST(DualRender, SurroundingsOfALoneFibreAreNothing) {
+  StrandSet one;
+  addStrand(one, {Vec3f(-1, 0, 0), Vec3f(1, 0, 0)}, 0.1f);
+  const auto shooter = StrandShooter::create(one);
+  if (!shooter.ok()) GTEST_SKIP() << shooter.error().text();
+  std::vector<StrandMeeting> meetings;
+  SurroundingLight light;
+  const DualScattering hair{FibreScattering(Square().fibre)};
+  shootAround(*shooter, hair, Vec3::Zero(), 0, Mat3::Identity(), Vec3::UnitZ(), 16, CounterRandom(3, 0),
+              meetings, light);
+  EXPECT_EQ(light.directFraction, 1);
+  EXPECT_EQ(arriving(light), 0);
+  EXPECT_EQ(light.backscatter, Vec3::Zero());
+}
+
+TEST(DualRender, SurroundingsKnowTheSurfaceAndTheInside) {
+  const Square square;
+  const auto shooter = StrandShooter::create(square.strands);
+  if (!shooter.ok()) GTEST_SKIP() << shooter.error().text();
+  const DualScattering hair{FibreScattering(square.fibre)};
+  constexpr int edge = Square::kSide / 2;
+  // In the middle of the lit side: nothing in front but the row's own neighbours, which a quarter of a cell
+  // sticks out of, 14 degrees at each end of the half circle; hair behind nearly all around.
+  const SurroundingLight top = around(*shooter, hair, 0, edge, Vec3::UnitZ());
+  EXPECT_EQ(top.directFraction, 1);
+  EXPECT_LT(arriving(top), 28.0 / 180);
+  EXPECT_GT(top.backscatter.minCoeff(), 0.9);
+  // In the far side: no hair behind.
+  const SurroundingLight bottom = around(*shooter, hair, 0, -edge, Vec3::UnitZ());
+  EXPECT_EQ(bottom.directFraction, 0);
+  EXPECT_LT(bottom.backscatter.maxCoeff(), 28.0 / 180);
+  // On a lit corner, light from the diagonal meets hair on half the way around at both ends of the cone at
+  // most.
+  const SurroundingLight side = around(*shooter, hair, 0, edge, Vec3(0, 1, 0.02).normalized());
+  EXPECT_GT(side.backscatter.minCoeff(), 0.3);
+  EXPECT_LT(side.backscatter.maxCoeff(), 0.7);  // light along the surface: half of what is behind is air
+  // Inside, what arrives falls with every layer, and is less than the layers' straight path where it goes
+  // around.
+  const double second = arriving(around(*shooter, hair, 0, edge - 1, Vec3::UnitZ())),
+               fourth = arriving(around(*shooter, hair, 0, edge - 3, Vec3::UnitZ()));
+  EXPECT_GT(second, 0.1);
+  EXPECT_GT(fourth, 0);
+  EXPECT_LT(fourth, second);
+}
+
 TEST(DualRender, SameBytesForAnyNumberOfThreads) {
   const Sheet sheet;
   const auto shooter = StrandShooter::create(sheet.strands);
@@ -95,6 +170,7 @@ TEST(DualRender, MapsComeNearRays) {
   const ForwardScatteringMap* maps[] = {&*map};
   const DualRenderScene scene{&*shooter, &hair, sheet.camera, sheet.lights};
   DualRenderOptions options = smallPicture();
+  options.surroundingRays = 0;  // maps know the straight path alone
   const Vec3 rays = meanOf(*renderDualScattering(scene, options));
   options.maps = maps;
   const Vec3 mapped = meanOf(*renderDualScattering(scene, options));

@@ -90,6 +90,52 @@ TEST(ForwardScatteringMap, VoxelsApproachTheExactSums) {
   EXPECT_LT(before, 0.01);
 }
 
+TEST(ForwardScatteringMap, AHairDoesNotShadowItself) {
+  const DualScattering hair(brownFibre());
+  StrandSet strands;
+  addStrand(strands, {Vec3f(-0.5f, -0.3f, -0.5f), Vec3f(0.5f, 0.3f, 0.5f)}, 0.02f);  // aslant to the map
+  const LightView view = distantLightView(Vec3::UnitZ(), {Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)}, 32);
+  const Vec3 tangent = Vec3(1, 0.6, 1).normalized();
+  for (const auto method :
+       {VisibilityMethod::Exact, VisibilityMethod::Opacity, VisibilityMethod::DeepOpacity}) {
+    VisibilityOptions options;
+    options.method = method;
+    options.slices = 16;
+    for (const bool filter : {false, true}) {
+      options.filter = filter;
+      const auto map = ForwardScatteringMap::build(strands, hair, view, options);
+      ASSERT_TRUE(map.ok());
+      double shadowed = 0;
+      for (int i = 0; i < 40; ++i) {
+        const Vec3 at = (-0.3 + 0.6 * i / 39) * Vec3(1, 0.6, 1);
+        const ForwardScattering own = map->at(at, {tangent, 0.02});
+        EXPECT_NEAR(own.directFraction, 1, 1e-5) << name(method);  // float sums, minus what they were made of
+        EXPECT_NEAR(own.transmittance.minCoeff(), 1, 1e-5) << name(method);
+        shadowed += (1 - map->at(at).directFraction) / 40;
+      }
+      EXPECT_GT(shadowed, 0.05);  // else there was nothing to take out
+    }
+  }
+}
+
+TEST(ForwardScatteringMap, FiltersWhatPassesNotItsLogarithm) {
+  const DualScattering hair(brownFibre());
+  const LightView view = distantLightView(Vec3::UnitZ(), {Vec3(-0.5, -0.5, -1), Vec3(0.5, 0.5, 0)}, 16);
+  const double row = 0.5 * view.texel;  // the middle of a texel
+  StrandSet strands;
+  addStrand(strands, {Vec3f(-0.5f, float(row), 0), Vec3f(0.5f, float(row), 0)}, float(0.9 * view.texel));
+  VisibilityOptions options = exact();
+  options.filter = true;
+  const auto map = ForwardScatteringMap::build(strands, hair, view, options);
+  ASSERT_TRUE(map.ok());
+  const ForwardScattering at =
+      map->at(Vec3(0, row + 0.5 * view.texel, -0.5));  // half of it from the free texel
+  EXPECT_NEAR(at.directFraction, 0.5 * (0.1 + 1), 1e-5);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(at.transmittance[c], 0.5 * (0.1 + 0.9 * hair.forwardAttenuation(0)[c] + 1), 1e-5);
+  }
+}
+
 TEST(ForwardScatteringMap, NoHairIsNoShadow) {
   const DualScattering hair(brownFibre());
   const LightView view = distantLightView(Vec3::UnitZ(), {}, 16);

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "coif/base/random.h"
 #include "coif/light/camera.h"
 #include "coif/light/dual_scattering.h"
 #include "coif/light/forward_scattering.h"
@@ -29,6 +30,10 @@ struct DualRenderOptions {
   int width = 512, height = 512;
   int samplesPerPixel = 4;  ///< jittered, >= 1
   std::uint64_t seed = 0;
+  /// Rays each way, forwards to the fibre that scatters on to a point and backwards through those that return
+  /// light to it, that measure how much hair there is around; 0: the straight path to the light and the
+  /// density factors alone. Not with maps.
+  int surroundingRays = 4;
   /// Empty: rays. Else one a light that shines, in the order key, fill, rim, more.
   std::span<const ForwardScatteringMap* const> maps;
 };
@@ -44,6 +49,14 @@ std::vector<ShiningLight> shiningLights(const Lights& lights, const CameraFrame&
 ForwardScattering shootForward(const StrandShooter& strands, const DualScattering& hair, const Vec3& point,
                                std::uint32_t strand, const Vec3& toLight,
                                std::vector<StrandMeeting>& meetings);
+
+/// The same with the hair around counted: `rays` directions, even over the half cone of the light's
+/// inclination around `fibre` (its frame's columns, the axis first), reach for the fibre that scatters on to
+/// the point, which gets its light along the straight path; as many, away from the light, count the fibres
+/// behind. Into `out`.
+void shootAround(const StrandShooter& strands, const DualScattering& hair, const Vec3& point,
+                 std::uint32_t strand, const Mat3& fibre, const Vec3& toLight, int rays,
+                 const CounterRandom& random, std::vector<StrandMeeting>& meetings, SurroundingLight& out);
 
 /// Mean radiance, alpha the share of rays that met something. Same bytes for any number of threads. Errors:
 /// InvalidArgument (sizes, samples, a number of maps that is not that of the lights, the camera), Cancelled.

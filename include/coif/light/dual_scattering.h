@@ -52,11 +52,30 @@ struct FibreMeans {
 };
 /// Attenuations are held at a sum <= 1; a lossless cluster's shift and variance, infinite, at 0.5 and 10.
 Backscatter backscatterOf(const FibreMeans& fibre, DualFormulas formulas);
+/// Ā_b of a fibre with `behind` others behind it instead of endlessly many: 0 with none, the corrected
+/// attenuation in the limit. A pile of plates (Stokes 1862), all orders, `behind` >= 0.
+double backscatterOfPile(double attenuationForward, double attenuationBackward, double behind);
+
+/// What reaches a fibre when the hair around it is met by rays instead of supposed everywhere: in the place
+/// of the density factors, which stay at 1 then. Directions as fibre.h has them, towards where the light
+/// comes from.
+struct SurroundingLight {
+  /// The light that a fibre in front scatters on, as if the half cone of the light were as bright all around;
+  /// nothing where there is none. One a ray; their mean is what arrives.
+  struct Arrival {
+    Vec3 direction = Vec3::UnitY();
+    Vec3 transmittance = Vec3::Zero(), variance = Vec3::Zero();
+  };
+  double directFraction = 1;
+  std::vector<Arrival> arrivals;
+  Vec3 backscatter = Vec3::Ones();  ///< share of Ā_b that the fibres behind return
+};
 
 /// Everything as plain arrays, for shaders: texels of three floats (RGB).
 struct DualScatteringTables {
   int inclinations = 0;                                    ///< nodes, even from −π/2 to π/2
   std::vector<float> forwardAttenuation, forwardVariance;  ///< ā_f, β̄_f²
+  std::vector<float> backwardAttenuation;                  ///< ā_b
   std::vector<float> backscatterAttenuation, backscatterShift, backscatterVariance;  ///< over θ_diff
   int azimuthInclinations = 0;  ///< nodes, even from 0 to π/2, of FibreScattering::azimuthalInclination
   int azimuths = 0;             ///< nodes, even from 0 to π, of |φ_i − φ_o|
@@ -82,6 +101,10 @@ class DualScattering {
   Vec3 evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving) const;
   /// With light that arrives unscattered as it leaves at offset h of the fibre (fibre.h): near field.
   Vec3 evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving, double h) const;
+  /// The same with the surroundings' light, each arrival scattered from where it comes.
+  Vec3 evaluate(const Vec3& wi, const Vec3& wo, const SurroundingLight& arriving, double h) const;
+  /// Share of Ā_b that `behind` fibres give, light at this inclination.
+  Vec3 backscatterShare(double theta, double behind) const;
   /// Its parts: f_s · cos θ_i of light spread by `variance` (N^G if `scattered`), f_back · cos θ_i.
   Vec3 single(const Vec3& wi, const Vec3& wo, const Vec3& variance, bool scattered) const;
   Vec3 back(const Vec3& wi, const Vec3& wo, const Vec3& variance, bool scattered) const;

@@ -6,6 +6,7 @@
 // values a fragment in the same way, which is what dual scattering asks for.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -73,6 +74,18 @@ class VisibilityMap {
   double opticalDepthAt(std::size_t texel, double depth) const;
   /// All channels of the hair between light and point, filtered if the map is; out has channels() values.
   void sums(const Vec3& world, std::span<float> out) const;
+  /// A texel that a query mixes, and all channels in front of the query's depth in it.
+  struct Tap {
+    std::size_t texel = 0;
+    double weight = 0;
+    std::array<double, 1 + ChannelSource::kMost> sums{};
+  };
+  /// Up to four of them; the weight that is missing to one belongs to texels off the map, which are lit. None
+  /// for the light map.
+  int tapsAt(const Vec3& world, std::array<Tap, 4>& out) const;
+  /// How much of a fragment at one depth of a texel is in front of another, as the map sees it: a step, or
+  /// linear through the layer that both are in.
+  virtual double shareInFront(std::size_t texel, double fragmentDepth, double depth) const;
   /// Upper bound of |ΔT| there from the interval that the point is in.
   double boundAt(const Vec3& world) const;
 
