@@ -21,7 +21,7 @@ Settings settingsOf(const BenchOptions& options) {
 }
 
 ScatteringScene pictureScene(std::size_t hairs, const BenchOptions& options) {
-  ScatteringScene scene = bobScene(hairs, options, 32);
+  ScatteringScene scene = styledScene("bob", hairs, options, 32);
   scene.lights = Lights{};  // three lights, sky and ground
   return scene;
 }

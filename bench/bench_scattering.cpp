@@ -2,6 +2,7 @@
 // directions, widths and density factors.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "bench/bench.h"
 #include "bench/bench_text.h"
@@ -221,12 +222,83 @@ void compareClusters(Comparison& comparison, const Settings& settings, const Ben
   }
 }
 
-/// Error against time on one blond head: samples a pixel of the truth, rays and maps.
-BenchPlot methodsPlot(const ScatteringScene& scene, const StrandShooter& shooter, int truthSamples,
-                      const BenchOptions& options) {
+struct MapChoice {
+  std::string method, choice;
+  VisibilityOptions options;
+};
+
+/// Voxels along the light (opacity maps of many slices), layers and bits: what the sums are kept in.
+std::vector<MapChoice> mapChoices(bool quick) {
+  std::vector<MapChoice> out;
+  VisibilityOptions how;
+  how.filter = true;
+  how.method = VisibilityMethod::Opacity;
+  for (const int slices : quick ? std::vector{32} : std::vector{8, 32, 128}) {
+    how.slices = slices;
+    out.push_back({"voxels", std::to_string(slices) + " slices", how});
+  }
+  how.method = VisibilityMethod::DeepOpacity;
+  for (const int layers : quick ? std::vector{7} : std::vector{3, 4, 7, 15}) {
+    how.layers = layers;
+    out.push_back({"deep opacity", std::to_string(layers) + " layers", how});
+  }
+  how.method = VisibilityMethod::Occupancy;
+  out.push_back({"occupancy", "128/4", how});
+  how.method = VisibilityMethod::Exact;
+  out.push_back({"sorted lists", "all", how});
+  return out;
+}
+
+/// Forward scattering maps of a scene's lights, and the head's shadow beside them.
+class SceneMaps {
+ public:
+  SceneMaps(const ScatteringScene& scene, const DualScattering& hair, VisibilityOptions how,
+            double shiftTexels, const BenchOptions& options) {
+    std::vector<Vec3> points;
+    for (const Vec3f& p : scene.strands.points) points.push_back(p.cast<double>());
+    const Box box = bounds(points);
+    for (const ShiningLight& light : shiningLights(scene.lights, require(frameOf(scene.camera)))) {
+      LightView view = distantLightView(light.toLight, box, options.quick ? 64 : 512);
+      view.eye += shiftTexels * view.texel * (view.right + 0.57 * view.up);
+      heads_.push_back(
+          std::make_unique<OpaqueMap>(require(OpaqueMap::make(scene.head, view, options.context))));
+      how.opaque = heads_.back().get();
+      maps_.push_back(std::make_unique<ForwardScatteringMap>(
+          require(ForwardScatteringMap::build(scene.strands, hair, view, how, options.context))));
+      pointers_.push_back(maps_.back().get());
+    }
+  }
+  std::span<const ForwardScatteringMap* const> all() const { return pointers_; }
+  double bytesPerTexel() const { return pointers_[0]->map().bytesPerTexel(); }
+
+ private:
+  std::vector<std::unique_ptr<OpaqueMap>> heads_;
+  std::vector<std::unique_ptr<ForwardScatteringMap>> maps_;
+  std::vector<const ForwardScatteringMap*> pointers_;
+};
+
+/// Mean |Δ| of the colours over the mean colour.
+double meanChange(const FloatImage& a, const FloatImage& b) {
+  double change = 0, mean = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+    if (i % 4 == 3) continue;
+    change += std::abs(double(a.rgba[i]) - double(b.rgba[i]));
+    mean += double(a.rgba[i]);
+  }
+  return mean > 0 ? change / mean : 0;
+}
+
+/// The channel's ratio of means that is farthest from 1.
+double colorRatio(const FloatImage& picture, const FloatImage& truth) {
+  return distanceTo(picture, truth).colorRatio;
+}
+
+/// Error against time and memory on blond hair: samples a pixel of the truth, rays and maps.
+void addMethods(const ScatteringScene& scene, const StrandShooter& shooter, int truthSamples,
+                const BenchOptions& options, BenchReport& report) {
   BenchPlot plot;
-  plot.name = "scattering-methods";
-  plot.title = "Global scattering on the blond bob: path traced, rays, maps";
+  plot.name = "scattering-methods-" + scene.name;
+  plot.title = "Global scattering, blond " + scene.name + ": path traced, rays, maps";
   plot.errorUnit = "relative MSE to the path tracer";
   plot.truth = std::to_string(truthSamples) + " samples a pixel, another seed";
   const FibreParameters fibre = fibreOf(HairColor::Blond);
@@ -248,39 +320,34 @@ BenchPlot methodsPlot(const ScatteringScene& scene, const StrandShooter& shooter
                                       distanceTo(picture, truth), watch.seconds()));
     }
   }
-  std::vector<Vec3> points;
-  for (const Vec3f& p : scene.strands.points) points.push_back(p.cast<double>());
-  const Box box = bounds(points);
-  const std::vector<ShiningLight> lights = shiningLights(scene.lights, require(frameOf(scene.camera)));
-  struct MapChoice {
-    const char* name;
-    VisibilityMethod method;
-    int slices, layers;
-  };
-  for (const MapChoice& map : {MapChoice{"voxels, 32 slices", VisibilityMethod::Opacity, 32, 7},
-                               MapChoice{"voxels, 128 slices", VisibilityMethod::Opacity, 128, 7},
-                               MapChoice{"deep opacity, 4 layers", VisibilityMethod::DeepOpacity, 128, 4},
-                               MapChoice{"deep opacity, 7 layers", VisibilityMethod::DeepOpacity, 128, 7},
-                               MapChoice{"occupancy", VisibilityMethod::Occupancy, 128, 7}}) {
+  constexpr int kSamples = 8;
+  const FloatImage straight = dualPicture(scene, shooter, hair, kSamples, 0, options);
+  BenchPlot bytes;
+  for (const MapChoice& choice : mapChoices(options.quick)) {
     const Stopwatch watch;
-    VisibilityOptions how;
-    how.method = map.method;
-    how.slices = map.slices;
-    how.layers = map.layers;
-    how.filter = true;
-    std::vector<ForwardScatteringMap> maps;
-    for (const ShiningLight& light : lights) {
-      maps.push_back(require(ForwardScatteringMap::build(
-          scene.strands, hair, distantLightView(light.toLight, box, options.quick ? 64 : 256), how,
-          options.context)));
-    }
-    std::vector<const ForwardScatteringMap*> pointers;
-    for (const ForwardScatteringMap& one : maps) pointers.push_back(&one);
-    const FloatImage picture = dualPicture(scene, shooter, hair, 8, 0, options, pointers);
-    plot.samples.push_back(
-        sampleOf(map.name, scene.name, "8 samples", distanceTo(picture, truth), watch.seconds()));
+    const SceneMaps maps(scene, hair, choice.options, 0, options);
+    const FloatImage picture = dualPicture(scene, shooter, hair, kSamples, 0, options, maps.all());
+    BenchSample sample =
+        sampleOf(choice.method, scene.name, choice.choice, distanceTo(picture, truth), watch.seconds());
+    const SceneMaps moved(scene, hair, choice.options, 0.37, options);
+    const double ratio = colorRatio(picture, straight);
+    sample.measures = {{"bytes a texel", maps.bytesPerTexel()},
+                       {"mean colour over the rays'", ratio},
+                       {"flicker", meanChange(picture, dualPicture(scene, shooter, hair, kSamples, 0, options,
+                                                                   moved.all()))}};
+    report.figures.push_back({scene.name + ", " + choice.method + ", " + choice.choice +
+                                  ": mean colour over that of rays, worst channel",
+                              ratio, ""});
+    bytes.samples.push_back(sample);
+    plot.samples.push_back(std::move(sample));
   }
-  return plot;
+  std::vector<BenchSample> maps = std::move(bytes.samples);
+  bytes = plot;
+  bytes.samples = std::move(maps);
+  bytes.name += "-bytes";
+  bytes.against = "bytes a texel";
+  report.plots.push_back(std::move(plot));
+  report.plots.push_back(std::move(bytes));
 }
 
 /// How the mean colour depends on the density factors.
@@ -324,7 +391,7 @@ BenchReport benchScattering(const BenchOptions& options) {
   const Settings settings = settingsOf(options);
   Comparison comparison(options, settings.dualSamples);
   compareClusters(comparison, settings, options);
-  ScatteringScene bob = bobScene(settings.hairs, options);
+  ScatteringScene bob = styledScene("bob", settings.hairs, options);
   bob.size = settings.bobSize;
   const StrandShooter shooter = shooterOf(bob);
   for (const HairColor color : settings.colors) {
@@ -332,8 +399,15 @@ BenchReport benchScattering(const BenchOptions& options) {
                    colorBarOf(color));
   }
   comparison.finish(report);
-  report.plots.push_back(methodsPlot(bob, shooter, settings.bobSamples, options));
-  if (!options.quick) report.plots.push_back(densityPlot(bob, shooter, settings.bobSamples, options));
+  addMethods(bob, shooter, settings.bobSamples, options, report);
+  if (options.quick) return report;
+  report.plots.push_back(densityPlot(bob, shooter, settings.bobSamples, options));
+  ScatteringScene cluster = clusterScene(settings.clusterSide, 20, 15, options.seed);
+  cluster.size = settings.clusterSize;
+  addMethods(cluster, shooterOf(cluster), settings.bobSamples, options, report);
+  ScatteringScene longHair = styledScene("long", settings.hairs, options);
+  longHair.size = settings.bobSize;
+  addMethods(longHair, shooterOf(longHair), settings.bobSamples, options, report);
   return report;
 }
 

@@ -52,16 +52,17 @@ ScatteringScene clusterScene(int side, double aroundDeg, double alongDeg, std::u
   return scene;
 }
 
-ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options, std::uint32_t strandPoints) {
+ScatteringScene styledScene(const std::string& name, std::size_t hairs, const BenchOptions& options,
+                            std::uint32_t strandPoints) {
   ScatteringScene scene;
-  scene.name = "bob";
+  scene.name = name;
   scene.head = makeExampleHead();
   const Surface head(scene.head);
   const Region region = require(automaticCap(head));
   CageOptions caging;
-  caging.count = int(suggestedCageCount("bob"));
+  caging.count = int(suggestedCageCount(name));
   const Cage cage = require(buildCage(head.mesh(), head, region, caging));
-  const Hairstyle style = require(modelHairstyle("bob", cage, head, options.context));
+  const Hairstyle style = require(modelHairstyle(name, cage, head, options.context));
   GrowOptions growing;
   growing.count = hairs;
   growing.points = strandPoints;

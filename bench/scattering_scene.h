@@ -1,4 +1,4 @@
-// Hair to scatter light: a cube of nearly parallel fibres, and a bob on a head.
+// Hair to scatter light: a cube of nearly parallel fibres, and styles on a head.
 #pragma once
 
 #include <string>
@@ -26,9 +26,10 @@ struct ScatteringScene {
 /// the cell in radius, tilted by up to two degrees; seen from +z, slightly from above. The light stands at
 /// these angles from the view, around the fibres and along them.
 ScatteringScene clusterScene(int side, double aroundDeg, double alongDeg, std::uint64_t seed);
-/// The ready bob on the example head, key and rim lights. Fewer than 100 000 hairs are wider, so that as much
+/// A ready style on the example head, key and rim lights. Fewer than 100 000 hairs are wider, so that as much
 /// light is blocked.
-ScatteringScene bobScene(std::size_t hairs, const BenchOptions& options, std::uint32_t strandPoints = 24);
+ScatteringScene styledScene(const std::string& name, std::size_t hairs, const BenchOptions& options,
+                            std::uint32_t strandPoints = 24);
 
 /// A single distant light in the scene's frame.
 Lights oneLight(const Vec3& toLight, double irradiance);

@@ -116,7 +116,7 @@ std::vector<SeenPoint> seenPoints(const HairModel& model, const Camera& camera, 
       }
       const Vec3 a = model.strands.points[chosen->point].cast<double>();
       const Vec3 d = model.strands.points[chosen->point + 1].cast<double>() - a;
-      seen.push_back({a + double(chosen->along) * d, coverage});
+      seen.push_back({a + double(chosen->along) * d, coverage, first + i});
     }
   }
   return seen;

@@ -27,6 +27,7 @@ std::vector<HairModel> hairModels(const BenchOptions& options);
 struct SeenPoint {
   Vec3 world = Vec3::Zero();
   double weight = 0;
+  std::size_t pixel = 0;  ///< y · pixels + x
 };
 /// One place a pixel: of the pixel's fragments, sorted by depth and cut by the head, one is drawn with the
 /// probability of being what the eye sees there, α Π (1 − α of those before it); its weight is the pixel's

@@ -5,7 +5,9 @@ cd "$(dirname "$0")/.."
 coif=${1:-build/release/bin/coif}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$coif" bench visibility -o "$folder"
-for plot in $(grep -o 'plots/visibility-[a-z0-9-]*\.svg' docs/visibility.md); do
-  cp "$folder/$(basename "$plot")" "docs/$plot"
+for page in visibility scattering; do
+  "$coif" bench "$page" -o "$folder"
+  for plot in $(grep -ho "plots/$page-[a-z0-9-]*\.svg" docs/visibility.md docs/light.md | sort -u); do
+    cp "$folder/$(basename "$plot")" "docs/$plot"
+  done
 done
