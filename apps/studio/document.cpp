@@ -97,12 +97,13 @@ Status Document::autosave() {
   // A copy: saving a document moves its relative head path along, and marks it as saved.
   Scene copy = editor.scene();
   copy.head.path = copy.head.path.empty() ? copy.head.path : editor.scene().headPath();
-  COIF_TRY(saveScene(copy, autosavePath()));
+  // What it is a copy of comes first: a crash between the two leaves no copy without a name.
   const std::string origin = path.empty() ? std::string() : fs::absolute(path).string();
   COIF_ASSIGN(auto file, SafeFile::create(autosavePath().string() + ".json"));
   const std::string text = nlohmann::json{{"original", origin}}.dump();
   file.write(text);
   COIF_TRY(file.commit());
+  COIF_TRY(saveScene(copy, autosavePath()));
   autosavedRevision_ = editor.revision();
   return {};
 }

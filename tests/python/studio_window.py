@@ -65,7 +65,9 @@ class Studio:
             [BIN / "coif-studio", *map(str, arguments), "--size", size, "--python-log", self.log],
             env=self.environment, cwd=folder, stderr=subprocess.PIPE,
         )
-        self.window = self.wait(lambda: self.tool("search", "--onlyvisible", "--name", "Coif Studio"), "a window")
+        # By process: the window of one that was killed may still stand for a moment.
+        search = ("search", "--all", "--onlyvisible", "--pid", self.process.pid, "--name", "Coif Studio")
+        self.window = self.wait(lambda: self.tool(*search), "a window")
 
     def tool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, capture_output=True, text=True)

@@ -124,9 +124,8 @@ def test_a_killed_studio_gives_the_work_back(display, studio):
     before = coif.Scene.load(studio.folder / "bob.coif").hair_mesh
     again = Studio(display, studio.folder)
     try:
-        time.sleep(1)
-        again.key("Return")  # the dialog's first answer is to recover
-        again.opened("*bob.coif")
+        # The dialog's first answer is to recover.
+        again.wait(lambda: again.key("Return") or "*bob.coif" in again.title(), "the work to come back")
         again.key("ctrl+s")
         again.wait(lambda: not again.title().startswith("*"), "the document to be saved")
         after = coif.Scene.load(studio.folder / "bob.coif").hair_mesh
