@@ -16,17 +16,21 @@ void main() {
     vec4 weights = texelFetch(mapMeans, ivec3(texel, 0), 0), moments = texelFetch(mapMeans, ivec3(texel, 1), 0);
     vec4 squares = texelFetch(mapAmounts, ivec3(texel, 1), 0);
     amounts = texelFetch(mapAmounts, ivec3(texel, 0), 0);
+    // Where a cluster's bin has to end: half way to the next that is not empty. From the last to the first, since a
+    // search ahead by a running index is compiled wrongly by a driver that we met.
+    vec4 means = moments / max(weights, 1e-30), highest = vec4(1);
+    float nextMean = -1.0;
+    for (int k = 3; k >= 0; --k) {
+      if (nextMean >= 0.0) highest[k] = 0.5 * (means[k] + nextMean);
+      if (weights[k] > 0.0) nextMean = means[k];
+    }
     float lowest = 0.0;
     for (int k = 0; k < 4; ++k) {
       if (!(weights[k] > 0.0)) continue;
-      int next = k + 1;
-      while (next < 4 && !(weights[next] > 0.0)) ++next;
-      float mean = moments[k] / weights[k];
-      float highest = next < 4 ? 0.5 * (mean + moments[next] / weights[next]) : 1.0;
       float reach = amounts[k] > 0.0 ? 1.7320508 * sqrt(squares[k] / amounts[k]) : 0.0;
-      from[k] = range.x + max(mean - reach, lowest) * (-range.y - range.x);
-      to[k] = range.x + min(mean + reach, highest) * (-range.y - range.x);
-      lowest = highest;
+      from[k] = range.x + max(means[k] - reach, lowest) * (-range.y - range.x);
+      to[k] = range.x + min(means[k] + reach, highest[k]) * (-range.y - range.x);
+      lowest = highest[k];
     }
   }
   imageStore(bins, ivec3(texel, 0), from);

@@ -62,7 +62,7 @@ std::vector<double> deepLayerEnds(LayerSizes law, int layers, double size) {
 
 LayerChoice chooseLayerSize(const FragmentStream& stream, LayerSizes law, int layers, PastLastLayer past,
                             const Context& context) {
-  const auto verdict = LayerSamples(stream).leastError(law, layers, past, context);
+  const auto verdict = LayerSamples(stream, context).leastError(law, layers, past, context);
   return {verdict.size, verdict.value};
 }
 

@@ -20,19 +20,17 @@ std::size_t layerOf(const std::vector<double>& ends, double d) {
 
 }  // namespace
 
-LayerSamples::LayerSamples(const FragmentStream& stream)
+LayerSamples::LayerSamples(const FragmentStream& stream, const Context& context)
     : fallback_(std::max(1e-3 * stream.view().depthRange, 1e-12)) {
   const int size = stream.view().size, step = size >= 64 ? 8 : 1;
   const std::size_t columns = std::size_t((size + step - 1) / step);
   texels_.resize(columns * columns);
   const auto wanted = [&](int v) { return v % step == step / 2; };
-  for (int band = 0; band < stream.bandCount(); ++band) {
-    stream.forBand(band, [&](const Fragment& f) {
-      const int x = int(f.texel) % size, y = int(f.texel) / size;
-      if (!wanted(x) || !wanted(y)) return;
-      texels_[std::size_t(y / step) * columns + std::size_t(x / step)].push_back({f.depth, f.beta()});
-    });
-  }
+  stream.forEach(context, [&](const Fragment& f) {
+    const int x = int(f.texel) % size, y = int(f.texel) / size;
+    if (!wanted(x) || !wanted(y)) return;
+    texels_[std::size_t(y / step) * columns + std::size_t(x / step)].push_back({f.depth, f.beta()});
+  });
   std::erase_if(texels_, [](const Texel& texel) { return texel.empty(); });
   for (Texel& texel : texels_) {
     std::stable_sort(texel.begin(), texel.end(),

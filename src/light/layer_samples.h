@@ -11,7 +11,7 @@ namespace coif {
 class LayerSamples {
  public:
   /// One texel in 64, on maps below 64 a side every one. One pass.
-  explicit LayerSamples(const FragmentStream& stream);
+  LayerSamples(const FragmentStream& stream, const Context& context);
 
   struct Verdict {
     double size = 1;   ///< s

@@ -144,7 +144,7 @@ struct Candidate {
 /// is not worth its layers.
 std::vector<Candidate> candidates(const FragmentStream& stream, const VisibilityOptions& options,
                                   const Context& context) {
-  const LayerSamples samples(stream);
+  const LayerSamples samples(stream, context);
   std::vector<Candidate> all;
   for (const int layers : kChoices) {
     const auto verdict = samples.leastBound(options.sizes, layers, options.past, context);

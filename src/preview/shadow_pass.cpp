@@ -13,7 +13,7 @@ constexpr int kLayerMap = 128;   // texels a side of the map that layer sizes ar
 Texture uploadVolume(const LightVolume& volume) {
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &name);
-  glTextureStorage3D(name, 1, GL_RGBA16F, volume.nx, volume.ny, volume.nz);
+  glTextureStorage3D(name, 1, GL_RGBA32F, volume.nx, volume.ny, volume.nz);
   glTextureSubImage3D(name, 0, 0, 0, 0, volume.nx, volume.ny, volume.nz, GL_RGBA, GL_FLOAT,
                       volume.values.data());
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
