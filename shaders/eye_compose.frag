@@ -14,6 +14,11 @@ void main() {
 }
 #endif
 
+#ifdef COMPOSE_SLICES          // they are composed already
+layout(binding = 0) uniform sampler2D slices;
+void main() { color = texelFetch(slices, ivec2(gl_FragCoord.xy), 0); }
+#endif
+
 #ifdef COMPOSE_LISTS
 #include "lists.glsl"
 void main() {

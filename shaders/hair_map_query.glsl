@@ -8,6 +8,10 @@ layout(binding = 4) uniform usampler2DArray mapOccupancy;
 float opticalDepthAt(ivec2 texel, float z) { return 0.0; }
 #endif
 
+#ifdef VISIBILITY_RUNNING      // half-angle slices: what the light has passed so far
+float opticalDepthAt(ivec2 texel, float z) { return texelFetch(mapLayers, ivec3(texel, 0), 0).x; }
+#endif
+
 #ifdef VISIBILITY_OPACITY
 float slice(ivec2 texel, int k) { return texelFetch(mapLayers, ivec3(texel, k >> 2), 0)[k & 3]; }
 float opticalDepthAt(ivec2 texel, float z) {

@@ -23,7 +23,7 @@ float opticalDepthOf(float a) {
   return a < 0.02 ? a * (1.0 + a * (0.5 + a * (0.33333333 + 0.25 * a))) : -log(1.0 - a);
 }
 
-#if !defined(PASS_RANGE) && !defined(PASS_COUNT) && !defined(PASS_LIST)
+#if !defined(PASS_RANGE) && !defined(PASS_COUNT) && !defined(PASS_LIST) && !defined(PASS_RUNNING)
 layout(binding = 2) uniform sampler2D mapRange;     // nearest depth, −farthest
 vec2 rangeHere() { return texelFetch(mapRange, ivec2(gl_FragCoord.xy), 0).xy; }
 #endif
@@ -31,6 +31,11 @@ vec2 rangeHere() { return texelFetch(mapRange, ivec2(gl_FragCoord.xy), 0).xy; }
 #ifdef PASS_RANGE
 layout(location = 0) out vec2 range;
 void write(float beta) { range = vec2(depth, -depth); }
+#endif
+
+#ifdef PASS_RUNNING
+layout(location = 0) out float sum;
+void write(float beta) { sum = beta; }
 #endif
 
 #ifdef PASS_OPACITY

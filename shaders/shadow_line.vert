@@ -7,7 +7,11 @@
 flat out vec4 ends;            // on the map, in texels
 flat out vec4 depthWidth;      // depths and widths at the ends
 void main() {
+#ifdef SLICED
+  int point = int(slicedSegments[gl_VertexID >> 1]) + 1;
+#else
   int point = gl_VertexID >> 1;
+#endif
   StrandPoint p = strandPointAt(max(point - 1, 0)), q = strandPointAt(point);
   vec4 a = mapProject(p.positionWidth.xyz), b = mapProject(q.positionWidth.xyz);
   // Cut where the light is nearer than it can see.

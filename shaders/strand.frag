@@ -33,6 +33,11 @@ void main() {
 }
 #endif
 
+#ifdef EYE_SLICE
+layout(location = 0) out vec4 color;
+void main() { color = alphaHere() * vec4(shaded, 1); }
+#endif
+
 #ifdef EYE_WEIGHTED
 layout(location = 0) out vec4 sum;
 layout(location = 1) out vec4 lost;

@@ -17,7 +17,8 @@ void main() {
   int point = strandVertex();
   StrandPoint p = strandPointAt(point);
   seed = floatBitsToUint(p.tangentSeed.w);
-  shaded = vec3(unpackHalf2x16(shades[point].x), unpackHalf2x16(shades[point].y).x);
+  uvec2 light = shades[shadeOfVertex()];
+  shaded = vec3(unpackHalf2x16(light.x), unpackHalf2x16(light.y).x);
   vec3 toEye = eye.xyz - p.positionWidth.xyz, corner = p.positionWidth.xyz;
   float pixel = eye.w * max(-dot(toEye, viewForward.xyz), viewForward.w);
   float ribbon = max(p.positionWidth.w, pixel);

@@ -1,13 +1,31 @@
 // Strand points as the passes see them. Passes call strandPointAt(strandVertex()) and know nothing of how points are
 // kept or made (synthesis.glsl). Ribbons: vertex v is side v & 1 of point v >> 1. LINES: vertex v is point v; a line is
 // a pixel wide, half the vertices and one primitive where a ribbon needs two, and does for hairs that are no wider.
+#ifdef SLICED                  // segments in the order of half-angle slices, by their first points
+layout(std430, binding = 7) readonly buffer SlicedSegments { uint slicedSegments[]; };
+#endif
 #ifdef COMPUTE
+#elif defined(SLICED)
+#ifdef LINES
+int sliceCorner() { return gl_VertexID & 1; }
+int sliceEntry() { return gl_VertexID >> 1; }
+float strandSide() { return 0.0; }
+#else                          // two triangles: corners 0 1 2, 2 1 3
+int sliceEntry() { return gl_VertexID / 6; }
+int sliceCorner() { int c = gl_VertexID % 6; return (c < 3 ? c : c == 3 ? 2 : c == 4 ? 1 : 3) >> 1; }
+float strandSide() { int c = gl_VertexID % 6; return c == 0 || c == 2 || c == 3 ? -0.5 : 0.5; }
+#endif
+int strandVertex() { return int(slicedSegments[sliceEntry()]) + sliceCorner(); }
+int shadeOfVertex() { return 2 * int(slicedSegments[sliceEntry()]) + sliceCorner(); }
 #elif defined(LINES)
 int strandVertex() { return gl_VertexID; }
 float strandSide() { return 0.0; }
 #else
 int strandVertex() { return gl_VertexID >> 1; }
 float strandSide() { return (gl_VertexID & 1) == 0 ? -0.5 : 0.5; }
+#endif
+#if !defined(COMPUTE) && !defined(SLICED)
+int shadeOfVertex() { return strandVertex(); }
 #endif
 struct StrandPoint {
   vec4 positionWidth;   // diameter in w

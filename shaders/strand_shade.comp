@@ -97,13 +97,23 @@ vec3 shade(StrandPoint p, uint seed, vec3 toEye, Reach reach) {
 }
 #endif
 
+#ifdef SLICED
+layout(location = 2) uniform uint firstEntry;  // of the slice, whose segments' ends are lit: two a segment
+#endif
+
 void main() {
   uint point = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
   if (point >= pointCount) return;
+  uint place = point;
+#ifdef SLICED
+  uint end = point & 1u, segment = slicedSegments[firstEntry + (point >> 1u)];
+  point = segment + end;
+  place = 2u * segment + end;
+#endif
   StrandPoint p = strandPointAt(int(point));
   uint seed = floatBitsToUint(p.tangentSeed.w);
   vec3 toEye = eye.xyz - p.positionWidth.xyz;
   toEye /= max(length(toEye), 1e-20);
   vec3 sum = clamp(shade(p, seed, toEye, reachOf(p.positionWidth.xyz, seed, point)), vec3(0), vec3(8));
-  shades[point] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0)));
+  shades[place] = uvec2(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, 0)));
 }

@@ -39,6 +39,7 @@ constexpr std::pair<const char*, PreviewTransparency> kTransparencies[] = {
     {"weighted-average", PreviewTransparency::WeightedAverage},
     {"occupancy-ordered", PreviewTransparency::OccupancyOrdered},
     {"depth-layers", PreviewTransparency::DepthLayers},
+    {"half-angle-slices", PreviewTransparency::HalfAngleSlices},
     {"exact-lists", PreviewTransparency::ExactLists}};
 
 /// What a word of the table means; the first entry's meaning for a word that is not in it.

@@ -28,7 +28,8 @@ EyeLayers::EyeLayers(int width, int height) : width_(width), height_(height) {
   GLint64 most = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
   const std::size_t row = std::size_t(width) * kLayers * kLayerBytes;
-  rows_ = int(std::clamp<std::size_t>(std::size_t(std::max<GLint64>(most, 1 << 24)) / row, 1, std::size_t(height)));
+  rows_ = int(
+      std::clamp<std::size_t>(std::size_t(std::max<GLint64>(most, 1 << 24)) / row, 1, std::size_t(height)));
   const std::size_t pixels = std::size_t(width) * std::size_t(rows_);
   nearest_ = emptyBuffer(pixels * 4);
   layers_ = emptyBuffer(pixels * kLayers * kLayerBytes);

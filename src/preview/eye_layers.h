@@ -1,6 +1,7 @@
-// Hair for the eye without the graphics pipeline: a compute shader adds it up in layers of depth behind the first
-// hair of each pixel (shaders/eye_layers.glsl). No noise, nothing sorted, the same bytes every time; what is lost is
-// the order of hairs within a layer. Where there is no GPU it costs a fraction of what the pipeline does.
+// Hair for the eye without the graphics pipeline: a compute shader adds it up in layers of depth behind the
+// first hair of each pixel (shaders/eye_layers.glsl). No noise, nothing sorted, the same bytes every time;
+// what is lost is the order of hairs within a layer. Where there is no GPU it costs a fraction of what the
+// pipeline does.
 #pragma once
 
 #include <vector>

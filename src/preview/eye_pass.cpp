@@ -34,12 +34,18 @@ std::vector<ProgramSource> eyePrograms() {
   }
   all.push_back({"strand.vert", "strand.frag", {"EYE_OCCUPANCY", "VISIBILITY_OCCUPANCY"}});
   all.push_back({"strand.vert", "strand.frag", {"EYE_OCCUPANCY", "VISIBILITY_OCCUPANCY", "LINES"}});
+  all.push_back({"strand.vert", "strand.frag", {"EYE_SLICE", "SLICED"}});
+  all.push_back({"strand.vert", "strand.frag", {"EYE_SLICE", "LINES", "SLICED"}});
+  all.push_back({"fullscreen.vert", "eye_compose.frag", {"COMPOSE_SLICES"}});
   all.push_back({"fullscreen.vert", "eye_compose.frag", {"COMPOSE_WEIGHTED"}});
   all.push_back({"fullscreen.vert", "eye_compose.frag", {"COMPOSE_LISTS", "LIST_OF_EYE"}});
   all.push_back({"lists_sort.comp", "", {"LIST_OF_EYE"}});
   all.push_back({"head.vert", "shadow_depth.frag", {}});
   const std::vector<ProgramSource> layers = EyeLayers::programs();
   all.insert(all.end(), layers.begin(), layers.end());
+  const std::vector<ProgramSource> sorting = SlicedHair::sortPrograms();
+  all.insert(all.end(), sorting.begin(), sorting.end());
+  all.push_back(SlicedHair::lightProgram());
   return all;
 }
 
@@ -110,6 +116,8 @@ Status EyePass::draw(const EyeScene& scene) const {
       break;
     case PreviewTransparency::ExactLists:
       return drawLists(scene);
+    case PreviewTransparency::HalfAngleSlices:  // drawn slice by slice
+      break;
   }
   return {};
 }
@@ -167,6 +175,25 @@ Status EyePass::drawLists(const EyeScene& scene) const {
   lists.bind();
   compose(scene, "COMPOSE_LISTS");
   return {};
+}
+
+void EyePass::beginSlices(const EyeScene& scene) const {
+  drawHeadDepth(scene);
+  const float nothing[4] = {0, 0, 0, 0};
+  glClearNamedFramebufferfv(own_.name(), GL_COLOR, 0, nothing);
+}
+
+void EyePass::drawSlice(const EyeScene& scene, const SlicedHair& hair, int slice) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, own_.name());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_BLEND);
+  glBlendFunc(hair.frontToBack() ? GL_ONE_MINUS_DST_ALPHA : GL_ONE,
+              hair.frontToBack() ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+  ProgramSource source = strandProgram(scene, "EYE_SLICE");
+  source.defines.push_back("SLICED");
+  glUseProgram(scene.programs(source));
+  hair.draw(slice);
+  glDisable(GL_BLEND);
 }
 
 void EyePass::compose(const EyeScene& scene, const char* pass) const {

@@ -5,6 +5,7 @@
 
 #include "preview/eye_layers.h"
 #include "preview/fragment_lists.h"
+#include "preview/sliced_hair.h"
 
 namespace coif::preview {
 
@@ -20,6 +21,11 @@ class EyePass {
   PreviewTransparency method() const { return method_; }
   /// Of one sub-frame, whose head and backdrop are drawn. Errors: TooLarge (lists that do not fit).
   Status draw(const EyeScene& scene) const;
+
+  /// HalfAngleSlices: begin, then a slice after the other, then end.
+  void beginSlices(const EyeScene& scene) const;
+  void drawSlice(const EyeScene& scene, const SlicedHair& hair, int slice) const;
+  void endSlices(const EyeScene& scene) const { compose(scene, "COMPOSE_SLICES"); }
 
  private:
   ProgramSource strandProgram(const EyeScene& scene, const char* pass) const;

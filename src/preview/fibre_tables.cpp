@@ -83,8 +83,9 @@ FibreTables::FibreTables(const FibreParameters& fibre) : fibre_(fibre) {
   }
   const std::vector<float> backward = backwardAttenuation(dual);
   int row = 0;
-  for (const auto* table : {&tables.forwardAttenuation, &tables.forwardVariance, &tables.backscatterAttenuation,
-                            &tables.backscatterShift, &tables.backscatterVariance, &backward}) {
+  for (const auto* table :
+       {&tables.forwardAttenuation, &tables.forwardVariance, &tables.backscatterAttenuation,
+        &tables.backscatterShift, &tables.backscatterVariance, &backward}) {
     glTextureSubImage2D(inclination_.name(), 0, 0, row++, tables.inclinations, 1, GL_RGB, GL_FLOAT,
                         table->data());
   }

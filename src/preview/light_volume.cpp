@@ -104,9 +104,9 @@ LightVolume lit(const LightVolume& empty, std::span<const float> optical, const 
       return sum;
     };
     const Eigen::ArrayXf sky = open(3, upper);
-    const Eigen::ArrayXf first = ground ? open(upper, depths.size())
-                                        : Eigen::ArrayXf(Eigen::Map<const Eigen::ArrayXf>(
-                                              depths[0].data() + begin, sky.size()));
+    const Eigen::ArrayXf first =
+        ground ? open(upper, depths.size())
+               : Eigen::ArrayXf(Eigen::Map<const Eigen::ArrayXf>(depths[0].data() + begin, sky.size()));
     for (std::size_t i = begin; i < end; ++i) {
       const auto at = Eigen::Index(i - begin);
       grid.values[i] = Vec4f(first[at], depths[1][i], depths[2][i], sky[at]);

@@ -40,7 +40,8 @@ Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head);
 LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
                               const Context& context);
 
-/// Optical depth a unit of length that light meets in the hair, as a mean over the hairs' places; 0 without hair.
+/// Optical depth a unit of length that light meets in the hair, as a mean over the hairs' places; 0 without
+/// hair.
 double meanExtinction(const CoarseStrands& strands);
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.

@@ -68,9 +68,13 @@ class ShadowPass {
 std::vector<ProgramSource> allPermutations();
 ProgramSource headProgram(const VisibilityOptions& visibility, bool studio);
 ProgramSource groundProgram(const VisibilityOptions& visibility);
-/// `fibre` null: the shading without tables.
-ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
-                           bool multiple, bool grey);
+/// What of strand_shade.comp a picture needs.
+struct ShadeParts {
+  bool shadows = false, tables = false;  ///< without tables: the studio's lobes
+  bool multiple = false, grey = false;   ///< with tables
+  bool sliced = false;                   ///< half-angle slices, which are lit one by one
+};
+ProgramSource shadeProgram(const VisibilityOptions& visibility, const ShadeParts& parts);
 
 /// Edges and faces of the hair mesh, one colour a layer.
 class OverlayPass {
@@ -90,9 +94,9 @@ class OverlayPass {
 class FrameTargets {
  public:
   static Result<FrameTargets> create(int width, int height);
-  void clear() const;  ///< the sum of the sub-frames
-  void begin() const;  ///< binds and clears the sub-frame
-  void bind() const;   ///< the sub-frame
+  void clear() const;                             ///< the sum of the sub-frames
+  void begin() const;                             ///< binds and clears the sub-frame
+  void bind() const;                              ///< the sub-frame
   GLuint depth() const { return depth_.name(); }  ///< of the sub-frame, a multi-sampled texture
   /// `shoulder`: by how much a sample of 1 is compressed; 0 keeps light as it is.
   void accumulate(const Programs& programs, const VertexArray& empty, double shoulder) const;

@@ -12,17 +12,17 @@ ProgramSource groundProgram(const VisibilityOptions& visibility) {
   return {"ground.vert", "ground.frag", mapDefines(visibility)};
 }
 
-ProgramSource shadeProgram(const VisibilityOptions& visibility, bool shadows, const FibreTables* fibre,
-                           bool multiple, bool grey) {
+ProgramSource shadeProgram(const VisibilityOptions& visibility, const ShadeParts& parts) {
   ProgramSource source{"strand_shade.comp", "", {}};
-  if (shadows) {
-    source.defines = mapDefines(visibility);
+  if (parts.shadows) {
+    source.defines = parts.sliced ? std::vector<std::string>{"VISIBILITY_RUNNING"} : mapDefines(visibility);
     source.defines.push_back("SHADOWS");
   }
-  source.defines.push_back(fibre == nullptr ? "SHADING_STUDIO"
-                           : multiple       ? "SHADING_DUAL"
+  if (parts.sliced) source.defines.push_back("SLICED");
+  source.defines.push_back(!parts.tables    ? "SHADING_STUDIO"
+                           : parts.multiple ? "SHADING_DUAL"
                                             : "SHADING_SINGLE");
-  if (fibre != nullptr && grey) source.defines.push_back("GREY");
+  if (parts.grey) source.defines.push_back("GREY");
   return source;
 }
 
@@ -42,6 +42,8 @@ std::vector<ProgramSource> allPermutations() {
     defines.push_back("SHADOWS");
   }
   lights.push_back({});
+  lights.push_back({"SLICED"});
+  lights.push_back({"VISIBILITY_RUNNING", "SHADOWS", "SLICED"});
   for (const std::vector<std::string>& defines : lights) {
     for (const char* shading : {"SHADING_STUDIO", "SHADING_SINGLE", "SHADING_DUAL"}) {
       ProgramSource source{"strand_shade.comp", "", defines};

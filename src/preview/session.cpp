@@ -14,7 +14,7 @@ PreviewSession::Impl::~Impl() {
 
 void PreviewSession::Impl::dropHair() {
   eyeStrands.reset(), shadowStrands.reset(), hairBuffers.reset(), shadows.reset();
-  eyeLines.reset(), cameraMap.reset();
+  eyeLines.reset(), cameraMap.reset(), sliced.reset();
   fog.reset();
 }
 

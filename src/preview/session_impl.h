@@ -36,7 +36,8 @@ struct PreviewSession::Impl {
   DetailOptions shadowDetail;  ///< of the strands in the maps
   std::unique_ptr<FibreTables> fibre;
   std::unique_ptr<EyePass> eye;
-  double eyeLayerSize = 0;  ///< of DepthLayers
+  std::unique_ptr<SlicedHair> sliced;       ///< HalfAngleSlices, of this picture
+  double eyeLayerSize = 0;                  ///< of DepthLayers
   std::unique_ptr<StrandBuffers> eyeLines;  ///< OccupancyOrdered's map of the camera
   bool eyeLinesOld = false;
   std::unique_ptr<HairMap> cameraMap;
@@ -59,8 +60,13 @@ struct PreviewSession::Impl {
                      const Context& context);
   Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
               Picture& picture, const Context& context);
-  Status drawSubframe(const PreviewOptions& options, const View& view) const;
+  Status drawSubframe(const PreviewOptions& options, const View& view, bool first);
   void shade(const PreviewOptions& options, Picture& picture);
+  /// Binds the program that lights strands, with what it reads.
+  void useShading(const PreviewOptions& options, bool sliced, StageReport& stage);
+  Status makeSlices(const PreviewOptions& options, const View& view, const FrameData& frame,
+                    Picture& picture);
+  Status drawSlices(const PreviewOptions& options, const EyeScene& scene, bool first);
   Status makeEye(const PreviewOptions& options, const View& view, Picture& picture);
   PreviewTransparency chooseTransparency(const PreviewOptions& options, const View& view,
                                          Picture& picture) const;

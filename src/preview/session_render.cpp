@@ -21,6 +21,10 @@ Status checkOptions(const PreviewOptions& options) {
   if (!(options.strandFraction >= 0 && options.strandFraction <= 1)) {
     return makeError(ErrorCode::InvalidArgument, "the fraction of strands must lie between 0 and 1");
   }
+  if (options.halfAngleSlices < 1 || options.halfAngleSlices > kMostSlicesAcross) {
+    return makeError(ErrorCode::InvalidArgument,
+                     "the number of half-angle slices must lie between 1 and 1024");
+  }
   if (options.shadows) COIF_TRY(checkMapOptions(options.visibility));
   for (const Vec3f* color :
        {&options.hairColor, &options.headColor, &options.backgroundTop, &options.backgroundBottom}) {
@@ -273,9 +277,12 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   return {};
 }
 
-Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, const Context& context) {
+Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const Context& context) {
   const Stopwatch watch;
-  COIF_TRY(checkOptions(options));
+  COIF_TRY(checkOptions(asked));
+  PreviewOptions options = asked;
+  if (asked.transparency == PreviewTransparency::HalfAngleSlices)
+    options.visibility.method = VisibilityMethod::None;  // the slices are the map
   COIF_ASSIGN(const View view, makeView(camera, seenBox(), options.width, options.height));
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
   COIF_TRY(device->gl->makeCurrent());
@@ -291,6 +298,7 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
   COIF_TRY(makeShadows(options, frame, frameBuffer, picture, context));
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);  // with what the maps filled in
   COIF_TRY(makeEye(options, view, picture));
+  COIF_TRY(makeSlices(options, view, frame, picture));
   shade(options, picture);
   COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
   COIF_TRY(device->programs->error());
@@ -306,10 +314,21 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& options, cons
 
 void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture) {
   if (!hair) return;
-  constexpr int kMostLookUps = 2;  // a point; hairs that overlap make the mean of more
-  constexpr double kDark = 0.01;  // of the light goes on through a hair: nothing is left after two
   StageReport& stage = report(picture, "shading", StageState::Ran, "light, hair or camera may have moved");
   const StageTimer timer(stage, options.measure);
+  if (sliced) {
+    stage.state = StageState::Skipped;
+    stage.reason = "half-angle slices are lit as they are drawn";
+    return;
+  }
+  useShading(options, false, stage);
+  eyeStrands->dispatchPoints();
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void PreviewSession::Impl::useShading(const PreviewOptions& options, bool slices, StageReport& stage) {
+  constexpr int kMostLookUps = 2;  // a point; hairs that overlap make the mean of more
+  constexpr double kDark = 0.01;   // of the light goes on through a hair: nothing is left after two
   const bool tables = options.shading != PreviewShading::Studio;
   if (tables) {
     const FibreParameters wanted = fibreOf(options);
@@ -323,10 +342,8 @@ void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture
   if (grey) stage.notes.push_back("grey hair: one channel");
   shadows->bindForHair();
   glUseProgram((*device->programs)(
-      shadeProgram(shadows->map().options(), shadowsHaveHair, tables ? fibre.get() : nullptr, multiple, grey)));
+      shadeProgram(shadows->map().options(), {shadowsHaveHair, tables, multiple, grey, slices})));
   glUniform1i(1, std::min(options.subframes, kMostLookUps));
-  eyeStrands->dispatchPoints();
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& view, Picture& picture) {
@@ -379,7 +396,7 @@ double PreviewSession::Impl::leastCoverage(const View& view) const {
   return least * eyeStrands->plan().widthScale / std::max(coarse.scale, 1e-300);
 }
 
-Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options, const View& view) const {
+Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options, const View& view, bool first) {
   constexpr double kShoulder = 0.25;
   const Programs& programs = *device->programs;
   const bool studio = options.shading == PreviewShading::Studio;
@@ -401,8 +418,9 @@ Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options, const V
                shadows->map().options());
   }
   if (hair) {
-    COIF_TRY(eye->draw({programs, *eyeStrands, headBuffers.get(), cameraMap.get(), *targets, device->empty,
-                        view, eyeLayerSize}));
+    const EyeScene scene{programs,      *eyeStrands, headBuffers.get(), cameraMap.get(), *targets,
+                         device->empty, view,        eyeLayerSize};
+    COIF_TRY(sliced ? drawSlices(options, scene, first) : eye->draw(scene));
   }
   if (overlayPass != nullptr) overlayPass->draw(programs);
   targets->accumulate(programs, device->empty, studio ? kShoulder : 0);
@@ -425,7 +443,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
     frame.viewport.z() = float(k);
     glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-    COIF_TRY(drawSubframe(options, view));
+    COIF_TRY(drawSubframe(options, view, k == 0));
     context.report("picture", double(k + 1) / options.subframes);
   }
   picture.image = targets->finish(*device->programs, device->empty, options.subframes);

@@ -40,6 +40,7 @@ class StrandBuffers {
   /// One invocation of the bound program a point, batch after batch: points at binding 0, their light at
   /// binding 4 (not of segments), their number at location 0.
   void dispatchPoints() const;
+  void bindPoints() const { bindBatch(0); }  ///< of the first batch, at binding 0
   Topology topology() const { return topology_; }
   const DetailPlan& plan() const { return plan_; }
   std::size_t bytes() const { return bytes_; }  ///< of points and indices

@@ -80,6 +80,48 @@ TEST_F(Methods, EveryTransparencyCoversAndColoursAsTheSortedListsDo) {
   }
 }
 
+// Light and eye on one side, and on opposite sides; the truth has sorted lists for both.
+TEST_F(Methods, HalfAngleSlicesComeToTheSortedListsAsTheyGetThinner) {
+  const StrandSet strands = tuft(3000, 0.004f);
+  for (const double front : {1.0, -1.0}) {
+    PreviewScene scene = sceneOf(strands);
+    scene.lights.key.direction = Vec3(0.3, 0.5, front);
+    scene.lights.fill.color = scene.lights.rim.color = Vec3f::Zero();
+    scene.lights.skyColor = scene.lights.groundColor = Vec3f::Zero();
+    PreviewOptions options = small(160, 4);
+    options.shading = PreviewShading::KajiyaKay;
+    options.hairColor = Vec3f(0.6f, 0.4f, 0.2f);
+    options.transparency = PreviewTransparency::ExactLists;
+    options.visibility.method = VisibilityMethod::Exact;
+    const Image truth = render(scene, options).image;
+    options.transparency = PreviewTransparency::HalfAngleSlices;
+    const auto sliced = [&](int slices) {
+      options.halfAngleSlices = slices;
+      return render(scene, options);
+    };
+    const auto difference = [&](const Image& image) {
+      double sum = 0;
+      for (std::size_t i = 0; i < truth.rgba.size(); i += 4) {
+        for (std::size_t c = 0; c < 3; ++c)
+          sum += std::abs(image.rgba[i + c] * double(image.rgba[i + 3]) -
+                          truth.rgba[i + c] * double(truth.rgba[i + 3]));
+      }
+      return sum;
+    };
+    const Picture fine = sliced(256);
+    EXPECT_NEAR(alphaSum(fine.image) / alphaSum(truth), 1, 0.01) << "nothing is lost or drawn twice";
+    EXPECT_NEAR(meanColor(fine.image) / meanColor(truth), 1, 0.1);
+    const double coarse = difference(sliced(4).image), finer = difference(sliced(32).image),
+                 finest = difference(fine.image);
+    EXPECT_LT(finer, 0.7 * coarse);
+    EXPECT_LE(finest, 1.02 * finer);
+    EXPECT_EQ(sliced(32).image.rgba, sliced(32).image.rgba) << "the same bytes every time";
+    const auto said = std::ranges::find(fine.stages, std::string("half-angle slices"), &StageReport::name);
+    ASSERT_NE(said, fine.stages.end());
+    EXPECT_NE(said->notes.front().find(front > 0 ? "front to back" : "back to front"), std::string::npos);
+  }
+}
+
 TEST_F(Methods, EveryShadingAndShadowIsFreeOfSpeckle) {
   const StrandSet strands = tuft(3000, 0.006f);
   for (const PreviewShading shading : {PreviewShading::Studio, PreviewShading::KajiyaKay,

@@ -56,9 +56,10 @@ enum class PreviewTransparency {
   WeightedAverage,   ///< mean colour by coverage, exact transmittance: no order at all
   OccupancyOrdered,  ///< weighted by what an occupancy map of the camera says is in front (Sintorn &
                      ///< Assarsson)
-  DepthLayers,       ///< optical depth and mean colour in layers behind a pixel's first hair; by compute alone:
-                     ///< no noise, and a fraction of the others' cost where there is no GPU
-  ExactLists,        ///< all fragments of a pixel, sorted: the truth, and as much memory as that takes
+  DepthLayers,  ///< optical depth and mean colour in layers behind a pixel's first hair; by compute alone:
+                ///< no noise, and a fraction of the others' cost where there is no GPU
+  HalfAngleSlices,  ///< lit and composed slice by slice: transparency and the key light's shadow in one
+  ExactLists,       ///< all fragments of a pixel, sorted: the truth, and as much memory as that takes
 };
 
 /// Deep opacity maps of seven layers, filtered. The GPU's versions have at most 256 slices and 16 layers, 4
@@ -80,6 +81,7 @@ struct PreviewOptions {
   FibreParameters fibre;       ///< of all shadings but Studio
   bool useAbsorption = false;  ///< take fibre.absorption; else hairColor is the colour that dense hair takes
   PreviewTransparency transparency = PreviewTransparency::Auto;
+  int halfAngleSlices = 128;  ///< 1 … 1024
   bool leaveOut = true;  ///< skip what cannot be seen in this scene; said in the picture's stages and notes
   bool shadows = true;
   VisibilityOptions visibility = previewVisibility();  ///< of the key light; `opaque` is the scene's head
