@@ -53,6 +53,8 @@ std::vector<Variant> eyeVariants() {
           {"weighted average", by(WeightedAverage)},
           {"occupancy-ordered", by(OccupancyOrdered)},
           {"exact lists", by(ExactLists)},
+          {"depth layers (compute rasteriser)", by(DepthLayers)},
+          {"half-angle slices", by(HalfAngleSlices)},
           {"dual scattering", [](PreviewOptions& o) { o.shading = PreviewShading::DualScattering; }}};
 }
 
@@ -238,12 +240,12 @@ BenchPlot detailPlot(PreviewSession& session, const Size& size, BenchReport& rep
   plot.errorUnit = "mean FLIP against every strand and point";
   plot.truth = "the same sub-frames with every strand and every point";
   PreviewOptions options = frameOptions(size, false);
-  options.subframes = 8;
+  options.subframes = 4;
   const FloatImage truth = toLinear(require(session.render(options)).image);
   options.lod = true;
   for (const double fraction : {0.02, 0.05, 0.1, 0.2, 0.5, 0.0}) {
     options.strandFraction = fraction;
-    options.subframes = 8;
+    options.subframes = 4;
     const Picture picture = require(session.render(options));
     const double error = require(flip(toLinear(picture.image), truth)).mean;
     const Picture timed = require(session.render(options));
@@ -282,7 +284,7 @@ BenchReport benchGpu(const BenchOptions& options) {
   for (const Size& size : sizes) {
     PreviewSession session = sessionOf(*preview, mesh, size.strands, options);
     if (&size == &sizes.front())
-      report.plots.push_back(detailPlot(session, {0, size.width, size.height}, report));
+      report.plots.push_back(detailPlot(session, {0, size.width / 2, size.height / 2}, report));
     measureSize(session, mesh, size, options, report);
   }
   return report;

@@ -79,50 +79,37 @@ std::vector<Vec3> skyDirections(const Vec3& up) {
   return result;
 }
 
-/// `ground`: how open the ground is, in place of the depth to the first light.
-LightVolume lit(const LightVolume& empty, std::span<const float> optical, const Vec3 (&lights)[3],
-                const Vec3& up, bool ground, const Context& context) {
-  std::vector<Vec3> directions(lights, lights + 3);
-  for (const Vec3& direction : skyDirections(up)) directions.push_back(direction);
-  const std::size_t upper = directions.size();
-  if (ground) {
-    for (const Vec3& direction : skyDirections(-up)) directions.push_back(direction);
-  }
+std::vector<std::vector<float>> sweeps(const LightVolume& grid, std::span<const float> optical,
+                                       std::span<const Vec3> directions, const Context& context) {
   std::vector<std::vector<float>> depths(directions.size());
   parallelFor(context, directions.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(empty, optical, directions[d]);
+    for (std::size_t d = begin; d < end; ++d) depths[d] = sweepOpticalDepth(grid, optical, directions[d]);
   });
-  LightVolume grid = empty;
-  grid.values.resize(optical.size());
+  return depths;
+}
+
+/// How open the half of the sphere about `up` is, by cell.
+std::vector<float> openHalf(const LightVolume& grid, std::span<const float> optical, const Vec3& up,
+                            const Context& context) {
+  const auto depths = sweeps(grid, optical, skyDirections(up), context);
+  std::vector<float> open(optical.size());
   parallelFor(context, optical.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    const auto open = [&](std::size_t first, std::size_t last) {
-      Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(Eigen::Index(end - begin));
-      for (std::size_t d = first; d < last; ++d) {
-        const Eigen::Map<const Eigen::ArrayXf> depth(depths[d].data() + begin, sum.size());
-        sum += (-kSkyOpacity * depth).exp() / float(last - first);
-      }
-      return sum;
-    };
-    const Eigen::ArrayXf sky = open(3, upper);
-    const Eigen::ArrayXf first =
-        ground ? open(upper, depths.size())
-               : Eigen::ArrayXf(Eigen::Map<const Eigen::ArrayXf>(depths[0].data() + begin, sky.size()));
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto at = Eigen::Index(i - begin);
-      grid.values[i] = Vec4f(first[at], depths[1][i], depths[2][i], sky[at]);
+    Eigen::Map<Eigen::ArrayXf> sum(open.data() + begin, Eigen::Index(end - begin));
+    sum.setZero();
+    for (const std::vector<float>& depth : depths) {
+      sum += (-kSkyOpacity * Eigen::Map<const Eigen::ArrayXf>(depth.data() + begin, sum.size())).exp() /
+             float(depths.size());
     }
   });
-  return grid;
+  return open;
 }
 
 }  // namespace
 
-double meanExtinction(const CoarseStrands& strands) {
-  if (strands.points.empty()) return 0;
-  const LightVolume grid = makeGrid(strands.box);
+double meanExtinction(const Fog& fog) {
   double sum = 0, squares = 0;
-  for (const float cell : hairOpticalSize(grid, strands)) sum += cell, squares += double(cell) * cell;
-  return sum > 0 ? squares / sum / grid.cell : 0;
+  for (const float cell : fog.hairOnly) sum += cell, squares += double(cell) * cell;
+  return sum > 0 ? squares / sum / fog.grid.cell : 0;
 }
 
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,
@@ -175,13 +162,33 @@ Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head) {
   return fog;
 }
 
-LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
+Openness openSides(const Fog& fog, const Vec3& up, const Context& context) {
+  Openness open;
+  open.up = up;
+  const auto& solid = fog.withHead.empty() ? fog.hairOnly : fog.withHead;
+  open.sky = openHalf(fog.grid, solid, up, context);
+  open.ground = openHalf(fog.grid, solid, -up, context);
+  open.skyPastHair = fog.withHead.empty() ? open.sky : openHalf(fog.grid, fog.hairOnly, up, context);
+  return open;
+}
+
+LightVolumes makeLightVolumes(const Fog& fog, const Openness& open, const Vec3 (&lights)[3],
                               const Context& context) {
   LightVolumes result;
   if (fog.hairOnly.empty()) return result;
-  result.hairOnly = lit(fog.grid, fog.hairOnly, lights, up, false, context);
-  result.withHead =
-      lit(fog.grid, fog.withHead.empty() ? fog.hairOnly : fog.withHead, lights, up, true, context);
+  const auto hair = sweeps(fog.grid, fog.hairOnly, lights, context);
+  const bool head = !fog.withHead.empty();
+  const auto solid = head ? sweeps(fog.grid, fog.withHead, std::span(lights).subspan(1), context)
+                          : std::vector<std::vector<float>>{hair[1], hair[2]};
+  result.hairOnly = result.withHead = fog.grid;
+  result.hairOnly.values.resize(fog.hairOnly.size());
+  result.withHead.values.resize(fog.hairOnly.size());
+  parallelFor(context, fog.hairOnly.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      result.hairOnly.values[i] = Vec4f(hair[0][i], hair[1][i], hair[2][i], open.skyPastHair[i]);
+      result.withHead.values[i] = Vec4f(open.ground[i], solid[0][i], solid[1][i], open.sky[i]);
+    }
+  });
   return result;
 }
 

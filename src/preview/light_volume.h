@@ -34,15 +34,22 @@ struct Fog {
 /// The extinction of a cell is Σ length · diameter · π/4 over its volume: randomly oriented fibres.
 Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head);
 
-/// Each direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear
-/// in the number of cells. `lights` are unit vectors towards the light, `up` the sky's middle. Deterministic
-/// for any number of threads.
-LightVolumes makeLightVolumes(const Fog& fog, const Vec3 (&lights)[3], const Vec3& up,
-                              const Context& context);
-
 /// Optical depth a unit of length that light meets in the hair, as a mean over the hairs' places; 0 without
 /// hair.
-double meanExtinction(const CoarseStrands& strands);
+double meanExtinction(const Fog& fog);
+
+/// What the light of the surroundings finds open, by cell: stays while lights turn about `up`.
+struct Openness {
+  Vec3 up = Vec3::Zero();                       ///< the sky's middle, a unit vector
+  std::vector<float> sky, ground, skyPastHair;  ///< the last as if there were no head
+};
+Openness openSides(const Fog& fog, const Vec3& up, const Context& context);
+
+/// Each direction is swept slice by slice from the light's side, bilinear in the slice before: soft, linear
+/// in the number of cells. `lights` are unit vectors towards the light. Deterministic for any number of
+/// threads.
+LightVolumes makeLightVolumes(const Fog& fog, const Openness& open, const Vec3 (&lights)[3],
+                              const Context& context);
 
 /// Optical depth from each cell's centre towards `direction`, for extinction times cell size `opticalSize`.
 std::vector<float> sweepOpticalDepth(const LightVolume& grid, std::span<const float> opticalSize,

@@ -52,8 +52,8 @@ class ShadowPass {
   /// `lists`: sorted lists may take the place of a number of layers that is to be chosen.
   static Result<ShadowPass> make(const Programs& programs, const LightView& view,
                                  const VisibilityOptions& options, bool lists, const CoarseStrands* strands,
-                                 const Fog* fog, const StrandBuffers* lines, const HeadBuffers* headBuffers,
-                                 FrameData& frame, const Context& context);
+                                 const Fog* fog, const Openness* open, const StrandBuffers* lines,
+                                 const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
   void bindForHair() const;
   void bindForHead() const { bind(hairOnly_); }
   const HairMap& map() const { return map_; }

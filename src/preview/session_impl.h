@@ -29,6 +29,7 @@ struct PreviewSession::Impl {
   std::unique_ptr<StrandBuffers> eyeStrands, shadowStrands;
   bool eyeOld = false, shadowOld = false;  ///< made before the mesh moved
   std::unique_ptr<Fog> fog;                ///< of hair and head as they are
+  std::unique_ptr<Openness> openness;      ///< of the fog, about the last picture's sky
   std::unique_ptr<ShadowPass> shadows;
   FrameData shadowFrame;  ///< of the picture that `shadows` was made for
   bool shadowsHaveHair = false;
@@ -71,6 +72,7 @@ struct PreviewSession::Impl {
   PreviewTransparency chooseTransparency(const PreviewOptions& options, const View& view,
                                          Picture& picture) const;
   double leastCoverage(const View& view) const;
+  const Fog& theFog();  ///< made when it is first asked for
   void dropHair();
   /// Runs `action` with the context current; nothing happens where it cannot be.
   template <class Action>

@@ -261,11 +261,13 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   const StageTimer timer(stage, options.measure);
   shadows.reset();
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-  if (withHair && fog == nullptr) fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
+  const Vec3 up = frame.viewUp.head<3>().cast<double>();
+  if (withHair && (fog == nullptr || openness == nullptr || openness->up != up))
+    openness = std::make_unique<Openness>(openSides(theFog(), up, context));
   COIF_ASSIGN(ShadowPass made,
               ShadowPass::make(*device->programs, lightView, visibility, options.leaveOut,
                                withHair ? &hair->model.coarse : nullptr, withHair ? fog.get() : nullptr,
-                               withHair && needsLines ? shadowStrands.get() : nullptr,
+                               openness.get(), withHair && needsLines ? shadowStrands.get() : nullptr,
                                options.shadows ? headBuffers.get() : nullptr, frame, context));
   shadows = std::make_unique<ShadowPass>(std::move(made));
   stage.bytes = shadows->map().bytes();
@@ -358,7 +360,7 @@ Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& 
   cameraMap.reset();
   if (method == PreviewTransparency::DepthLayers) {
     constexpr double kFirstLayer = 0.25;  // optical depths: eight linear layers then reach nine
-    eyeLayerSize = kFirstLayer / std::max(meanExtinction(hair->model.coarse), 1e-3 / box().diagonal());
+    eyeLayerSize = kFirstLayer / std::max(meanExtinction(theFog()), 1e-3 / box().diagonal());
   }
   if (method != PreviewTransparency::OccupancyOrdered) return {};
   follow(eyeLines, eyeLinesOld, eyeStrands->plan(), "strands for the camera's map", options.keep,
@@ -384,6 +386,14 @@ PreviewTransparency PreviewSession::Impl::chooseTransparency(const PreviewOption
   if (options.transparency != PreviewTransparency::Auto) return options.transparency;
   const bool layers = device->gl->software() && eyeStrands->plan().thin;
   return layers ? PreviewTransparency::DepthLayers : PreviewTransparency::Stochastic;
+}
+
+const Fog& PreviewSession::Impl::theFog() {
+  if (fog == nullptr) {
+    fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
+    openness.reset();
+  }
+  return *fog;
 }
 
 // Of a pixel by the thinnest of the coarse strands' points, without the ribbon's own widening.

@@ -72,16 +72,16 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 
 Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& view,
                                     const VisibilityOptions& options, bool lists,
-                                    const CoarseStrands* strands, const Fog* fog, const StrandBuffers* lines,
-                                    const HeadBuffers* headBuffers, FrameData& frame,
-                                    const Context& context) {
+                                    const CoarseStrands* strands, const Fog* fog, const Openness* open,
+                                    const StrandBuffers* lines, const HeadBuffers* headBuffers,
+                                    FrameData& frame, const Context& context) {
   ShadowPass pass;
   LightVolumes volumes;
   if (fog != nullptr) {
     const Vec3 lights[3] = {frame.lightDirection[0].head<3>().cast<double>(),
                             frame.lightDirection[1].head<3>().cast<double>(),
                             frame.lightDirection[2].head<3>().cast<double>()};
-    volumes = makeLightVolumes(*fog, lights, frame.viewUp.head<3>().cast<double>(), context);
+    volumes = makeLightVolumes(*fog, *open, lights, context);
   }
   const LightVolume& volume = volumes.hairOnly;
   frame.volumeLo << volume.lo.cast<float>(), float(volume.cell);
