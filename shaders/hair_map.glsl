@@ -29,6 +29,11 @@ vec4 mapProject(vec3 p) {
 float texelAt(float depth) { return mapCounts.w == 1 ? mapInfo.z * depth : mapInfo.z; }
 int sliceCount() { return mapCounts.x; }
 
+// −log1p(−α); the series where 1 − α would lose α's digits.
+float opticalDepthOf(float a) {
+  return a < 0.02 ? a * (1.0 + a * (0.5 + a * (0.33333333 + 0.25 * a))) : -log(1.0 - a);
+}
+
 // Where in its range a depth lies.
 int sliceOf(float d, float extent, int slices) {
   return extent > 0.0 ? int(clamp(d / extent * float(slices), 0.0, float(slices) - 1.0)) : 0;

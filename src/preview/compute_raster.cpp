@@ -10,7 +10,7 @@ constexpr int kRepeats = 3;
 
 Buffer filled(std::size_t count, std::uint32_t value) {
   Buffer buffer = emptyBuffer(count * 4);
-  glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+  fill(buffer, value);
   return buffer;
 }
 

@@ -18,10 +18,6 @@ void placeUniforms(const EyeScene& scene, int firstRow, int endRow) {
   glUniform1f(3, float(scene.layerSize));
 }
 
-void fill(const Buffer& buffer, std::uint32_t value) {
-  glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
-}
-
 }  // namespace
 
 EyeLayers::EyeLayers(int width, int height) : width_(width), height_(height) {

@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -87,6 +88,11 @@ inline Texture makeTexture2d(GLenum format, int width, int height, int samples =
     glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   }
   return Texture(name);
+}
+
+/// Fills a buffer of 32-bit numbers.
+inline void fill(const Buffer& buffer, std::uint32_t value) {
+  glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
 /// Fills a texture, all layers of an array, by drawing: drivers fill by glClearTexImage at a gigabyte a

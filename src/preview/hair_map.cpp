@@ -6,7 +6,7 @@
 namespace coif::preview {
 namespace {
 
-constexpr int kTargets = 8, kSlicesAPass = 4 * kTargets, kMostLayers = 16, kMostSlices = 256;
+constexpr int kTargets = 2, kMostLayers = 16, kMostSlices = 256;
 
 /// The uniform block of shaders/hair_map.glsl; std140.
 struct HairMapBlock {
@@ -17,31 +17,19 @@ struct HairMapBlock {
 };
 static_assert(sizeof(HairMapBlock) == 64 + 16 * 6);
 
-bool needsWholeRange(const VisibilityOptions& options) {
-  return options.method == VisibilityMethod::Opacity ||
-         (options.method == VisibilityMethod::DeepOpacity && options.past == PastLastLayer::EnlargeLast);
+ProgramSource linePass(const char* pass) {
+  return {"shadow_line.vert", "shadow_line.frag", {pass}};
 }
 
-int targetsOf(int layers) {
-  return (layers + 3) / 4;
-}
-
-ProgramSource linePass(const std::string& pass, const VisibilityOptions& options) {
-  ProgramSource source{"shadow_line.vert", "shadow_line.frag", {pass}};
-  if (needsWholeRange(options)) source.defines.push_back("WHOLE_RANGE readonly");
-  return source;
-}
-
-/// Draws into layers of `target` (from `first` on), adding up.
-void drawAdding(const StrandBuffers& lines, GLuint program, const Texture& target, int first, int count,
-                int size) {
+/// Draws into both layers of `target`, adding up.
+void drawAdding(const StrandBuffers& lines, GLuint program, const Texture& target, int size) {
   const Framebuffer framebuffer = makeFramebuffer();
   GLenum buffers[kTargets];
-  for (int t = 0; t < count; ++t) {
+  for (int t = 0; t < kTargets; ++t) {
     buffers[t] = GLenum(GL_COLOR_ATTACHMENT0 + t);
-    glNamedFramebufferTextureLayer(framebuffer.name(), buffers[t], target.name(), 0, first + t);
+    glNamedFramebufferTextureLayer(framebuffer.name(), buffers[t], target.name(), 0, t);
   }
-  glNamedFramebufferDrawBuffers(framebuffer.name(), count, buffers);
+  glNamedFramebufferDrawBuffers(framebuffer.name(), kTargets, buffers);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
   glViewport(0, 0, size, size);
   glEnable(GL_BLEND);
@@ -116,17 +104,8 @@ std::vector<std::vector<std::string>> mapQueryPermutations() {
 }
 
 std::vector<ProgramSource> mapPrograms() {
-  std::vector<ProgramSource> all;
-  VisibilityOptions plain, whole;
-  whole.method = VisibilityMethod::Opacity;
-  for (const char* pass : {"PASS_RANGE", "PASS_MEANS", "PASS_CLUSTERS", "PASS_OCCUPANCY", "PASS_COUNT",
-                           "PASS_LIST", "PASS_DEEP 1", "PASS_DEEP 2", "PASS_DEEP 3", "PASS_DEEP 4"}) {
-    all.push_back(linePass(pass, plain));
-  }
-  for (const char* pass :
-       {"PASS_RANGE", "PASS_OPACITY", "PASS_DEEP 1", "PASS_DEEP 2", "PASS_DEEP 3", "PASS_DEEP 4"}) {
-    all.push_back(linePass(pass, whole));
-  }
+  std::vector<ProgramSource> all = walkPrograms();
+  for (const char* pass : {"PASS_MEANS", "PASS_CLUSTERS"}) all.push_back(linePass(pass));
   for (const auto& defines : mapQueryPermutations()) all.push_back({"map_query.comp", "", defines});
   return all;
 }
@@ -204,16 +183,16 @@ Status HairMap::draw(const Programs& programs, const StrandBuffers& lines) {
   Status status;
   switch (options_.method) {
     case VisibilityMethod::Opacity:
-      drawOpacity(programs, lines);
+      status = drawOpacity(programs, lines);
       break;
     case VisibilityMethod::DensityClustering:
       drawClusters(programs, lines);
       break;
     case VisibilityMethod::DeepOpacity:
-      drawDeep(programs, lines);
+      status = drawDeep(programs, lines);
       break;
     case VisibilityMethod::Occupancy:
-      drawOccupancy(programs, lines);
+      status = drawOccupancy(programs, lines);
       break;
     case VisibilityMethod::Exact:
       status = drawLists(programs, lines);
@@ -226,23 +205,6 @@ Status HairMap::draw(const Programs& programs, const StrandBuffers& lines) {
   return status;
 }
 
-void HairMap::drawRange(const Programs& programs, const StrandBuffers& lines) {
-  range_ = makeFlat(GL_RG32F);
-  clearColor(range_, {3e38f, 3e38f, 0, 0});
-  const Framebuffer framebuffer = makeFramebuffer();
-  glNamedFramebufferTexture(framebuffer.name(), GL_COLOR_ATTACHMENT0, range_.name(), 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-  glEnable(GL_BLEND);
-  glBlendEquation(GL_MIN);
-  glUseProgram(programs(linePass("PASS_RANGE", VisibilityOptions{})));
-  lines.draw();
-  glBlendEquation(GL_FUNC_ADD);
-  glDisable(GL_BLEND);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glBindTextureUnit(2, range_.name());
-  if (needsWholeRange(options_)) drawWholeRange(programs);
-}
-
 void HairMap::drawWholeRange(const Programs& programs) {
   const std::uint32_t nothing[4] = {0xffffffffu, 0, 0, 0};
   wholeRange_ = makeBuffer(std::span<const std::uint32_t>(nothing));
@@ -253,34 +215,14 @@ void HairMap::drawWholeRange(const Programs& programs) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void HairMap::drawOpacity(const Programs& programs, const StrandBuffers& lines) {
-  drawRange(programs, lines);
-  const int count = targetsOf(options_.slices);
-  layers_ = makeLayers(count);
-  const GLuint program = programs(linePass("PASS_OPACITY", options_));
-  for (int first = 0; first < options_.slices; first += kSlicesAPass) {
-    const std::int32_t slice = first;
-    glNamedBufferSubData(uniforms_.name(), offsetof(HairMapBlock, counts) + 4, 4, &slice);
-    drawAdding(lines, program, layers_, first / 4, std::min(kTargets, count - first / 4), view_.size);
-  }
-}
-
-void HairMap::drawDeep(const Programs& programs, const StrandBuffers& lines) {
-  drawRange(programs, lines);
-  const int count = targetsOf(options_.layers);
-  layers_ = makeLayers(count);
-  const GLuint program = programs(linePass("PASS_DEEP " + std::to_string(count), options_));
-  drawAdding(lines, program, layers_, 0, count, view_.size);
-}
-
 void HairMap::drawClusters(const Programs& programs, const StrandBuffers& lines) {
   drawRange(programs, lines);
   const Texture means = makeLayers(2), amounts = makeLayers(2);
   bytes_ -= 64 * std::size_t(view_.size) * std::size_t(view_.size);  // not kept
   layers_ = makeLayers(3);
-  drawAdding(lines, programs(linePass("PASS_MEANS", options_)), means, 0, 2, view_.size);
+  drawAdding(lines, programs(linePass("PASS_MEANS")), means, view_.size);
   glBindTextureUnit(5, means.name());
-  drawAdding(lines, programs(linePass("PASS_CLUSTERS", options_)), amounts, 0, 2, view_.size);
+  drawAdding(lines, programs(linePass("PASS_CLUSTERS")), amounts, view_.size);
   glBindTextureUnit(6, amounts.name());
   glBindImageTexture(0, layers_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glUseProgram(programs[ProgramId::MapClusters]);
@@ -289,35 +231,6 @@ void HairMap::drawClusters(const Programs& programs, const StrandBuffers& lines)
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(5, 0);
   glBindTextureUnit(6, 0);
-}
-
-void HairMap::drawOccupancy(const Programs& programs, const StrandBuffers& lines) {
-  drawRange(programs, lines);
-  layers_ = makeLayers(1);
-  bits_ = makeLayers(4, GL_R32UI);
-  glBindImageTexture(0, bits_.name(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
-  drawAdding(lines, programs(linePass("PASS_OCCUPANCY", options_)), layers_, 0, 1, view_.size);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-}
-
-Status HairMap::drawLists(const Programs& programs, const StrandBuffers& lines) {
-  lists_.emplace(view_.size, view_.size);
-  // Nothing is attached: fragments leave their trace in images and buffers alone.
-  const Framebuffer framebuffer = makeFramebuffer();
-  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_WIDTH, view_.size);
-  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, view_.size);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-  lists_->bindCounts();
-  glUseProgram(programs(linePass("PASS_COUNT", options_)));
-  lines.draw();
-  COIF_TRY(lists_->makeRoom(8, listLimit_));
-  lists_->bind();
-  glUseProgram(programs(linePass("PASS_LIST", options_)));
-  lines.draw();
-  lists_->sort(programs[ProgramId::SortMapLists]);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  bytes_ += lists_->bytes();
-  return {};
 }
 
 void HairMap::bind() const {

@@ -1,10 +1,12 @@
-// What the key light sees of the hair, on the GPU: the visibility methods of light's visibility.h, drawn from
-// lines by the same rule of fragments, so that both give the same transmittance.
+// What the key light sees of the hair, on the GPU: the visibility methods of light's visibility.h, by the
+// same rule of fragments, so that both give the same transmittance. Strands are walked over the map by
+// compute and add up in whole numbers (shaders/map_walk.comp); density clustering, whose moments need floats,
+// is drawn as lines.
 //
-// Cost in passes over the strands: None and LightMap 0; Exact 2; DeepOpacity and Occupancy 2; Opacity 1 and
-// one for every 32 slices; DensityClustering 3. Bytes a texel: DeepOpacity 8 + 4 · layers (in fours),
-// Occupancy 40, DensityClustering 56 (and 64 while it is made), Opacity 8 + 4 · slices, Exact 12 and 8 a
-// fragment.
+// Cost in passes over the strands: None and LightMap 0; Exact 2; DeepOpacity and Occupancy 2; Opacity 2, more
+// where a storage block does not hold all slices; DensityClustering 3. Bytes a texel: DeepOpacity 8 + 4 ·
+// layers (in fours), Occupancy 40, DensityClustering 56 (and 64 while it is made), Opacity 8 + 4 · slices,
+// Exact 12 and 8 a fragment.
 #pragma once
 
 #include <cstdint>
@@ -63,10 +65,11 @@ class HairMap {
   void placeUniforms(double opacity);
   void drawRange(const Programs& programs, const StrandBuffers& lines);
   void drawWholeRange(const Programs& programs);
-  void drawOpacity(const Programs& programs, const StrandBuffers& lines);
-  void drawDeep(const Programs& programs, const StrandBuffers& lines);
+  Status drawOpacity(const Programs& programs, const StrandBuffers& lines);
+  Status drawDeep(const Programs& programs, const StrandBuffers& lines);
   void drawClusters(const Programs& programs, const StrandBuffers& lines);
-  void drawOccupancy(const Programs& programs, const StrandBuffers& lines);
+  Status drawOccupancy(const Programs& programs, const StrandBuffers& lines);
+  void resolve(const Programs& programs, const ProgramSource& source) const;
   Status drawLists(const Programs& programs, const StrandBuffers& lines);
   Result<bool> drawShortLists(const Programs& programs, const StrandBuffers& lines);
   Status draw(const Programs& programs, const StrandBuffers& lines);
@@ -82,6 +85,11 @@ class HairMap {
   std::optional<FragmentLists> lists_;
 };
 
+/// Opacity slices, and a last deep layer that is enlarged, need the depths of all fragments taken together.
+bool needsWholeRange(const VisibilityOptions& options);
+
+/// Those that walk over the map by compute (hair_map_walk.cpp).
+std::vector<ProgramSource> walkPrograms();
 /// Every permutation that maps are drawn with, for the test that compiles them all.
 std::vector<ProgramSource> mapPrograms();
 /// Methods and options that look-ups differ by.
