@@ -6,7 +6,7 @@
 namespace coif::io::usd {
 namespace {
 
-constexpr Type kInts{Base::Int, 1, true}, kFloats{Base::Float, 1, true}, kMatrix{Base::Double, 16, false};
+constexpr Type kInts{Base::Int, 1, true}, kFloats{Base::Float, 1, true};
 
 void applySchema(Prim& prim, const char* schema) {
   const auto at = std::find_if(prim.metadata.begin(), prim.metadata.end(),
@@ -43,13 +43,8 @@ void bindToSkeleton(const SkinBinding& skin, std::span<const std::uint32_t> rows
   };
   primvar("primvars:skel:jointIndices", "int[]", spread<std::int32_t>(skin, rows, kInts, skin.joints));
   primvar("primvars:skel:jointWeights", "float[]", spread<float>(skin, rows, kFloats, skin.weights));
-  std::vector<double> matrix;  // USD's points are rows
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) matrix.push_back(skin.bindFromScene(row, column));
-  }
-  Value bind = owned(kMatrix, std::move(matrix));
-  bind.array.count = 1;
-  prim.attributes.push_back(makeAttribute("primvars:skel:geomBindTransform", "matrix4d", std::move(bind)));
+  prim.attributes.push_back(
+      makeAttribute("primvars:skel:geomBindTransform", "matrix4d", matrix(skin.bindFromScene)));
   if (!skin.jointNames.empty())
     prim.attributes.push_back(makeUniform("skel:joints", "token[]", tokens(skin.jointNames)));
   prim.relationships.push_back({"skel:skeleton", {skin.skeleton}});

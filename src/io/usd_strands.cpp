@@ -267,10 +267,27 @@ Status checkFrames(const StrandExport& what) {
     }
     before = frame.timeCode;
   }
+  if (!what.headPoses.empty() && what.headPoses.size() != what.frames.size())
+    return makeError(ErrorCode::InvalidArgument, "there is not one pose of the head a frame");
+  for (const Eigen::Matrix4d& pose : what.headPoses) {
+    if (!pose.allFinite())
+      return makeError(ErrorCode::InvalidArgument, "a pose of the head is not finite",
+                       "frame " + std::to_string(&pose - what.headPoses.data()));
+  }
   if (!what.frames.empty() && !(what.timeCodesPerSecond > 0 && std::isfinite(what.timeCodesPerSecond))) {
     return makeError(ErrorCode::InvalidArgument, "timeCodesPerSecond must be positive");
   }
   return {};
+}
+
+/// The head as a whole, by frame: xformOp:transform; the default is the first, as that of the points is.
+void moveHead(const StrandExport& what, Prim& head) {
+  if (what.headPoses.empty()) return;
+  Attribute transform = makeAttribute("xformOp:transform", "matrix4d", matrix(what.headPoses.front()));
+  for (std::size_t f = 0; f < what.frames.size(); ++f)
+    transform.samples.push_back({what.frames[f].timeCode, matrix(what.headPoses[f])});
+  head.attributes.push_back(std::move(transform));
+  head.attributes.push_back(makeUniform("xformOpOrder", "token[]", tokens({"xformOp:transform"})));
 }
 
 Status checkLengths(const StrandSet& set) {
@@ -359,6 +376,7 @@ Result<Layer> describeExport(const StrandExport& all, std::vector<std::string>& 
   if (what.head != nullptr) {
     COIF_ASSIGN(Prim head, describeHead(*what.head));
     if (what.skin != nullptr) bindVertices(what.skin->head, what.head->vertexCount(), head);
+    moveHead(what, head);
     root.children.push_back(std::move(head));
   }
   root.children.push_back(describeLooks("/Hair/Looks"));

@@ -203,6 +203,12 @@ Value tokens(std::vector<std::string> values) {
 Value prependedTokens(std::vector<std::string> values) {
   return texts(Base::PrependedTokens, false, std::move(values));
 }
+Value matrix(const Eigen::Matrix4d& columns) {
+  std::vector<double> numbers(columns.data(), columns.data() + 16);  // by columns: USD's rows
+  Value value = owned(Type{Base::Double, 16, false}, std::move(numbers));
+  value.array.count = 1;
+  return value;
+}
 Value number(double value) {
   return scalar(Base::Double, value);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coif/base/result.h"
+#include "coif/base/vec.h"
 
 namespace coif::io::usd {
 
@@ -142,6 +143,8 @@ const Value* find(std::span<const Entry> entries, std::string_view name);
 Value token(std::string text);
 Value string(std::string text);
 Value tokens(std::vector<std::string> texts);
+/// matrix4d: USD's points are rows, so that the transpose is stored.
+Value matrix(const Eigen::Matrix4d& columns);
 Value prependedTokens(std::vector<std::string> texts);
 Value number(double value);
 Value integer(std::int32_t value);

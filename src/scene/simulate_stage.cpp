@@ -192,14 +192,19 @@ Result<WriteReport> Evaluation::exportMotion(const Scene& scene, const SimulateO
   out.strands = &frames[0];
   const auto& poses = motion->poses;
   const bool moves =
-      std::any_of(poses.begin(), poses.end(), [&](const RigidPose& p) { return !(p == poses[0]); });
-  out.head = impl_->head && !moves ? &impl_->head->mesh() : nullptr;
+      std::any_of(poses.begin(), poses.end(), [](const RigidPose& p) { return !(p == RigidPose{}); });
+  out.head = impl_->head ? &impl_->head->mesh() : nullptr;
   out.color = scene.look.hairColor;
   out.timeCodesPerSecond = what.framesPerSecond;
-  for (std::size_t f = 0; f < frames.size(); ++f) out.frames.push_back({double(f), frames[f].points});
-  COIF_ASSIGN(WriteReport written, saveStrands(out, path, context));
-  if (moves && impl_->head)
-    written.notes.push_back("the head moves and is left out: a still one would stand beside its hair");
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    out.frames.push_back({double(f), frames[f].points});
+    if (!moves || !impl_->head) continue;
+    Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+    pose.topLeftCorner<3, 3>() = poses[f].rotation;
+    pose.topRightCorner<3, 1>() = poses[f].position;
+    out.headPoses.push_back(pose);
+  }
+  COIF_ASSIGN(const WriteReport written, saveStrands(out, path, context));
   StageReport& report = impl_->add("export", StageState::Ran, path.filename().string() + " was asked for",
                                    watch.seconds(), written.bytes);
   report.notes = written.notes;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "coif/io/mesh_io.h"
 #include "coif/io/safe_file.h"
 #include "coif/scene/evaluate.h"
 #include "scene/sample_scene.h"
@@ -173,6 +174,35 @@ TEST(SimulateStage, WritesUsdTimeSamplesAndDrapes) {
   EXPECT_GT(draped->greatestMove, 0);
   EXPECT_FALSE(scene.hairMesh == before);
   EXPECT_EQ(scene.placedHash, meshHash(scene.hairMesh));
+}
+
+// The head goes along: its transform at a frame takes its rest to where the roots of that frame are.
+TEST(SimulateStage, WritesAMovingHeadAsTimeSamplesOfItsTransform) {
+  const auto head = folder() / "head.obj";
+  std::ofstream(head) << "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n";
+  Scene scene = test::sampleScene();
+  scene.strands.count = 20;
+  scene.dynamics.collide = false;  // a plane has no inside
+  scene.head.path = head;
+  scene.head.contentHash = fileHash(head).value();
+  Evaluation evaluation;
+  SimulateOptions what = frames(3);
+  for (int f = 0; f < 3; ++f) {
+    what.motion.poses.push_back(
+        {Eigen::AngleAxisd(0.5 * f, Vec3::UnitY()).toRotationMatrix(), Vec3(0.25 * f, 0, 0)});
+  }
+  for (const char* name : {"moving.usda", "moving.usdc"}) {
+    const auto path = folder() / name;
+    const auto written = evaluation.exportMotion(scene, what, path);
+    ASSERT_TRUE(written.ok()) << written.error().text();
+    EXPECT_TRUE(loadPolygonMesh(path).ok());
+  }
+  std::ifstream file(folder() / "moving.usda");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::size_t at = text.find("xformOp:transform.timeSamples");
+  ASSERT_NE(at, std::string::npos);
+  // The last sample's translation: a row of its own, USD's points being rows.
+  EXPECT_NE(text.find("(0.5, 0, 0, 1)", at), std::string::npos) << text.substr(at, 600);
 }
 
 TEST(Cache, RoundTripsAndRefusesEveryCutAndEveryChangedByte) {

@@ -32,6 +32,8 @@ struct StrandExport {
   const PolygonMesh* head = nullptr;   ///< written beside the strands (USD, glTF)
   const StrandSkin* skin = nullptr;    ///< binds all three to the head's skeleton (USD)
   std::vector<StrandFrame> frames;     ///< USD time samples; empty: static
+  /// World from head by frame, affine, as many as there are frames (USD); empty: the head stands still.
+  std::vector<Eigen::Matrix4d> headPoses;
   double timeCodesPerSecond = 24;
   StrandMesh mesh = StrandMesh::Cards;  ///< glTF fall-back mesh
   std::size_t meshStrandLimit = 2000;   ///< the fall-back uses this many strands (a prefix) at most, widened

@@ -65,7 +65,8 @@ class Evaluation {
   /// follow the cage alone. Errors: those of meshAt.
   Result<StrandSet> strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
                               const Context& context = {});
-  /// Writes all frames as USD time samples (.usda, .usdc); simulates first. A moving head is left out.
+  /// Writes all frames as USD time samples (.usda, .usdc): points of the strands, transform of a head that
+  /// moves. Simulates first.
   Result<WriteReport> exportMotion(const Scene& scene, const SimulateOptions& what,
                                    const std::filesystem::path& path, const Context& context = {});
   /// Lets the scene's hair mesh hang under gravity and counts it as placed: a modelling step.
