@@ -11,7 +11,7 @@ PACKAGES=(
   build-essential cmake ninja-build ccache git ca-certificates dpkg-dev
   python3 python3-dev python3-venv
   libeigen3-dev libopenmesh-dev libosd-dev libtinygltf-dev libtbb-dev libepoxy-dev libegl-dev libgl-dev
-  libglfw3-dev libimgui-dev libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev libopenexr-dev libembree-dev
+  libglfw3-dev libimgui-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri libstb-dev libopenexr-dev libembree-dev
   liblz4-dev libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
 )
 missing=()

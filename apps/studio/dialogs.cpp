@@ -48,6 +48,7 @@ void Studio::askPath(PathUse use) {
                : use == PathUse::Export     ? folder / (stem + ".usdc")
                : use == PathUse::Screenshot ? folder / (stem + ".png")
                : use == PathUse::Turntable  ? folder / (stem + "-turn.png")
+               : use == PathUse::BakeMotion ? folder / (stem + "-motion.usdc")
                                             : folder / "")
                   .string();
   ImGui::OpenPopup("path");
@@ -59,6 +60,9 @@ void Studio::usePath(const fs::path& path) {
   if (use == PathUse::SaveAs) return saveTo(path);
   if (use == PathUse::Export) return exportTo(path);
   if (use == PathUse::Turntable) return beginTurntable(path);
+  if (use == PathUse::BakeMotion) return bakeMotion(path);
+  if (use == PathUse::RunScript) return runScript(path);
+  if (use == PathUse::TakeMesh) return run("use_mesh", {{"file", path.string()}});
   const auto png = encodePng(window_.screenshot());
   if (!png.ok()) return say(png.error().text(), true);
   auto file = SafeFile::create(path);
@@ -70,9 +74,15 @@ void Studio::usePath(const fs::path& path) {
 
 void Studio::drawPathDialog() {
   if (pathUse_ == PathUse::None) return;
-  const char* titles[] = {"", "Open a head or a .coif document", "Save the document as",
-                          "Export strands (.usdc, .usda, .glb, .hair)", "Write a picture of the window",
-                          "Write a turntable as numbered pictures"};
+  const char* titles[] = {"",
+                          "Open a head or a .coif document",
+                          "Save the document as",
+                          "Export strands (.usdc, .usda, .glb, .hair)",
+                          "Write a picture of the window",
+                          "Write a turntable as numbered pictures",
+                          "Bake hair in motion (.usdc, .usda, .coifcache)",
+                          "Run a Python script",
+                          "Take the hair mesh of a .coif document"};
   const std::string title = std::string(titles[int(pathUse_)]) + "###path";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
   centred(560 * window_.scale());
@@ -111,8 +121,8 @@ void Studio::drawRecoveryDialog() {
   ImGui::TextWrapped("The last run ended without saving. Its newest copy can be opened again.");
   bool decided = false;
   if (ImGui::Button("Recover") || window_.keys().pressed("Enter")) {
-    auto document = Document::recover(leftBehind_.front());
-    document.ok() ? adopt(std::move(*document)) : say(document.error().text(), true);
+    job_.abandon();  // whatever else was being opened
+    recover(leftBehind_.front());
     decided = true;
   }
   ImGui::SameLine();
@@ -124,7 +134,11 @@ void Studio::drawRecoveryDialog() {
   }
   ImGui::SameLine();
   decided |= ImGui::Button("Later");
-  if (decided) leftBehind_.clear(), ImGui::CloseCurrentPopup();
+  if (decided) {
+    leftBehind_.clear();
+    ImGui::CloseCurrentPopup();
+    if (!document_ && !job_.busy()) openExample();
+  }
   ImGui::EndPopup();
 }
 

@@ -9,6 +9,7 @@
 
 #include "coif/io/mesh_io.h"
 #include "coif/io/safe_file.h"
+#include "coif/scalp/example_head.h"
 #include "coif/scene/new_scene.h"
 
 namespace coif::studio {
@@ -60,6 +61,23 @@ Result<std::unique_ptr<Document>> Document::open(const fs::path& path, const std
   document->head = head;
   document->readHead();
   return document;
+}
+
+Result<std::unique_ptr<Document>> Document::openExample(const Context& context) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path shipped = program.parent_path().parent_path() / "share/coif/example/bob.coif";
+  if (fs::exists(shipped, error)) {
+    COIF_ASSIGN(std::unique_ptr<Document> document, open(shipped, "", context));
+    document->path.clear();
+    return document;
+  }
+  const fs::path head = stateFolder() / "example-head.obj";
+  if (!fs::exists(head, error)) {
+    fs::create_directories(stateFolder(), error);
+    COIF_TRY(savePolygonMesh(makeExampleHead(), head));
+  }
+  return open(head, "bob", context);
 }
 
 void Document::readHead() {

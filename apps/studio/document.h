@@ -20,6 +20,9 @@ class Document {
   static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path, const std::string& style,
                                                 const Context& context);
 
+  /// The bob on the example head that came with the program, not saved yet; made anew where it did not.
+  static Result<std::unique_ptr<Document>> openExample(const Context& context);
+
   Editor editor;
   std::shared_ptr<const Surface> head;  ///< null when it could not be read
   std::string headProblem;              ///< why not

@@ -90,8 +90,12 @@ void Studio::begin(const std::string& command) {
       return say(attempt.error().text(), true);
     tool_ = std::make_unique<OperationTool>(command, editor, view_);
   } else {
-    run(command, argumentsFor(info));
+    command == "use_mesh" ? askPath(PathUse::TakeMesh) : run(command, argumentsFor(info));
   }
+}
+
+const HairMesh& Studio::shownMesh() const {
+  return attempt_ ? *attempt_ : playedMesh_ ? *playedMesh_ : document_->editor.mesh();
 }
 
 void Studio::show(const std::string& command, const CommandArguments& arguments) {
@@ -213,7 +217,7 @@ void Studio::drawUnderView() {
 }
 
 void Studio::drawOverView() {
-  const HairMesh& now = attempt_ ? *attempt_ : document_->editor.mesh();
+  const HairMesh& now = shownMesh();
   EditState state = document_->editor.state();
   if (attempt_) state.selection = keepValid(now, state.selection);
   if (const Selection* painted = select_.painted()) {

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   CLI::App app("Coif Studio: sculpt hairstyles on hair meshes");
   app.footer("Example:\n  coif-studio head.obj --style bob\n");
   app.set_version_flag("--version", std::string("coif-studio ") + COIF_VERSION);
-  StudioOptions options;
+  StudioOptions options;  // its clock starts here
   std::string size = "1280x800";
   app.add_option("file", options.open, "A .coif document, or a head: OBJ, PLY, OFF, STL, GLB, glTF or USD");
   app.add_option("--style", options.style, "The hairstyle that a head is opened with; '' for bare roots");
@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
   app.add_option("--python-log", options.pythonLog, "Append each command that is done, as a line of Python");
   bool listCommands = false;
   app.add_flag("--list-commands", listCommands, "Print every command with menu and key as JSON, and end");
+  app.add_option("--script", options.script, "A Python script to run on the document");
+  app.add_option("--channel", options.channel, "A socket to the Python process that opens the studio")
+      ->group("");
   CLI11_PARSE(app, argc, argv);
   int width = 0, height = 0;
   if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || width < 200 || height < 100 ||

@@ -16,7 +16,8 @@ void Studio::drawPanels() {
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                       ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
                                       ImGuiWindowFlags_NoBringToFrontOnFocus;
-  const float height = std::max(size.y - line, 1.0f);
+  float height = std::max(size.y - line, 1.0f);
+  height -= drawConsole(at, {size.x, height});
   if (roomy) {
     ImGui::SetNextWindowPos(at);
     ImGui::SetNextWindowSize({left, height});
@@ -30,6 +31,7 @@ void Studio::drawPanels() {
       drawAdjustPanel();
       drawStrandPanel();
       drawLookPanel();
+      drawMotionPanel();
       drawHistoryPanel();
       drawStagePanel();
       drawPythonPanel();
@@ -38,7 +40,7 @@ void Studio::drawPanels() {
     }
     ImGui::End();
   }
-  ImGui::SetNextWindowPos({at.x, at.y + height});
+  ImGui::SetNextWindowPos({at.x, at.y + size.y - line});
   ImGui::SetNextWindowSize({size.x, line});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * scale, 2 * scale});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
@@ -148,10 +150,7 @@ void Studio::drawPythonPanel() {
 }
 
 void Studio::drawStatusLine() {
-  if (opening_.valid()) {
-    ImGui::Text("opening %s ...", openingName_.c_str());
-    return;
-  }
+  if (job_.busy()) return drawProgress();
   if (messageIsProblem_) {
     ImGui::TextColored({1, 0.45f, 0.35f, 1}, "%s", message_.c_str());
   } else {

@@ -30,8 +30,8 @@ std::uint64_t topologyHash(const Scene& scene) {
 
 }  // namespace
 
-PictureWorker::PictureWorker(std::function<void()> ready)
-    : ready_(std::move(ready)), thread_([this] { loop(); }) {}
+PictureWorker::PictureWorker(std::function<void()> ready, Trace& trace)
+    : ready_(std::move(ready)), trace_(trace), thread_([this] { loop(); }) {}
 
 PictureWorker::~PictureWorker() {
   {
@@ -48,7 +48,7 @@ void PictureWorker::ask(PictureRequest request) {
     const std::scoped_lock lock(mutex_);
     wanted_ = std::move(request);
     busy_ = true;
-    cancel_ = true;
+    if (!draftRuns_) cancel_ = true;
   }
   wake_.notify_all();
 }
@@ -59,6 +59,7 @@ std::optional<PictureAnswer> PictureWorker::take() {
 }
 
 void PictureWorker::loop() {
+  (void)openPreview();  // while the first document is read; the first request says what is wrong with it
   while (true) {
     PictureRequest request;
     {
@@ -68,10 +69,12 @@ void PictureWorker::loop() {
       request = std::move(*wanted_);
       wanted_.reset();
       cancel_ = false;
+      draftRuns_ = request.draft;
     }
     PictureAnswer made = answer(request);
     {
       const std::scoped_lock lock(mutex_);
+      draftRuns_ = false;
       if (!wanted_) busy_ = false;
       if (!cancel_) done_ = std::move(made);
     }
@@ -79,6 +82,15 @@ void PictureWorker::loop() {
   }
   session_.reset();
   preview_.reset();
+}
+
+Status PictureWorker::openPreview() {
+  if (preview_) return {};
+  const Trace::Span span(trace_, "open the preview");
+  COIF_ASSIGN(Preview made, Preview::create());
+  preview_.emplace(std::move(made));
+  session_ = std::make_unique<PreviewSession>(*preview_);
+  return {};
 }
 
 PictureAnswer PictureWorker::answer(const PictureRequest& request) {
@@ -101,8 +113,10 @@ Status PictureWorker::updateHair(const PictureRequest& request, const Context& c
   if (hairShown_ && topology == shownTopology_) {
     std::vector<Vec3> positions;
     for (const HairVertex& vertex : request.scene->hairMesh.vertices()) positions.push_back(vertex.position);
+    const Trace::Span span(trace_, "move strands");
     COIF_TRY(session_->moveHair(positions, context));
   } else {
+    const Trace::Span span(trace_, "grow strands");
     Scene roots = *request.scene;  // roots and widths are all that the session wants
     roots.strands.points = 2, roots.strands.tolerance = 0;
     COIF_ASSIGN(const StrandSet* strands, evaluation_.strands(roots, context));
@@ -115,14 +129,18 @@ Status PictureWorker::updateHair(const PictureRequest& request, const Context& c
   return {};
 }
 
+/// In steps of two, and not back and forth: other detail means other shadow maps.
+void PictureWorker::adaptDrafts(double seconds) {
+  constexpr double kWanted = 0.12;
+  constexpr std::size_t kLeast = 7500, kMost = 4000000;
+  if (seconds > 1.6 * kWanted && draftSegments_ > kLeast) draftSegments_ /= 2;
+  if (seconds < 0.4 * kWanted && draftSegments_ < kMost) draftSegments_ *= 2;
+}
+
 Status PictureWorker::show(const PictureRequest& request, PictureAnswer& out) {
   Context context;
   context.cancel = &cancel_;
-  if (!preview_) {
-    COIF_ASSIGN(Preview made, Preview::create());
-    preview_.emplace(std::move(made));
-    session_ = std::make_unique<PreviewSession>(*preview_);
-  }
+  COIF_TRY(openPreview());
   if (request.head && request.surface && (!headShown_ || shownHead_ != request.surface)) {
     COIF_TRY(session_->setHead(request.surface->mesh()));
     headShown_ = true, shownHead_ = request.surface;
@@ -139,7 +157,24 @@ Status PictureWorker::show(const PictureRequest& request, PictureAnswer& out) {
   }
   session_->setCamera(request.camera);
   session_->setLights(request.lights);
-  COIF_ASSIGN(Picture picture, session_->render(request.options, context));
+  Trace::Span span(trace_, request.draft ? "draft picture" : "fine picture");
+  PreviewOptions options = request.options;
+  if (request.draft) {
+    options.maxSegments = draftSegments_;
+    // Without a GPU the layered shadow map alone would take longer than the rest of a draft.
+    if (preview_->software()) options.visibility.method = VisibilityMethod::LightMap;
+    // The very first picture waits for as few shaders as can be.
+    options.shadows = options.shadows && anythingShown_;
+    anythingShown_ = true;
+  }
+  options.measure = trace_.on();
+  COIF_ASSIGN(Picture picture, session_->render(options, context));
+  for (const StageReport& stage : picture.stages) span.note(stage.name + " ms", 1e3 * stage.seconds);
+  span.note("strand bytes", double(picture.uploaded.strands));
+  span.note("hair mesh bytes", double(picture.uploaded.hairMesh));
+  span.note("strands", double(picture.strandsDrawn));
+  span.note("segments", double(picture.segmentsDrawn));
+  if (request.draft) adaptDrafts(picture.seconds);
   out.image = std::move(picture.image);
   out.strandsDrawn = picture.strandsDrawn;
   out.stages = evaluation_.reports();

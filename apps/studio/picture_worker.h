@@ -12,6 +12,7 @@
 
 #include "coif/preview/session.h"
 #include "coif/scene/evaluate.h"
+#include "trace.h"
 
 namespace coif::studio {
 
@@ -22,6 +23,7 @@ struct PictureRequest {
   Lights lights;
   PreviewOptions options;
   bool strands = true, head = true;
+  bool draft = false;  ///< made to its end, so that something is seen while the mouse moves on
   std::shared_ptr<const Surface> surface;  ///< the head; null: none
 };
 
@@ -37,10 +39,10 @@ struct PictureAnswer {
 class PictureWorker {
  public:
   /// `ready` is called from the worker's thread after each answer.
-  explicit PictureWorker(std::function<void()> ready);
+  PictureWorker(std::function<void()> ready, Trace& trace);
   ~PictureWorker();
 
-  /// Replaces a request that was not begun; one that runs is cancelled.
+  /// Replaces a request that was not begun; a fine one that runs is cancelled.
   void ask(PictureRequest request);
   /// The newest answer since the last call.
   std::optional<PictureAnswer> take();
@@ -49,21 +51,27 @@ class PictureWorker {
  private:
   void loop();
   PictureAnswer answer(const PictureRequest& request);
+  Status openPreview();
   Status show(const PictureRequest& request, PictureAnswer& out);
+  void adaptDrafts(double seconds);
   Status updateHair(const PictureRequest& request, const Context& context);
 
   std::function<void()> ready_;
+  Trace& trace_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<PictureRequest> wanted_;
   std::optional<PictureAnswer> done_;
   std::atomic<bool> stop_{false}, cancel_{false}, busy_{false};
+  bool draftRuns_ = false;
 
   // The worker's own; only its thread touches them.
   std::optional<Preview> preview_;
   std::unique_ptr<PreviewSession> session_;
   Evaluation evaluation_;
   std::shared_ptr<const Surface> shownHead_;
+  std::size_t draftSegments_ = 15000;  // follows the machine
+  bool anythingShown_ = false;
   bool headShown_ = false, hairShown_ = false;
   std::uint64_t shownRevision_ = 0, shownTopology_ = 0;
 

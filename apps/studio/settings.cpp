@@ -58,6 +58,8 @@ Settings Settings::load() {
     out.keys = json.value("keys", out.keys);
     out.lightTheme = json.value("lightTheme", false);
     out.mayaMouse = json.value("mayaMouse", false);
+    out.console = json.value("console", false);
+    out.consoleHeight = std::clamp(json.value("consoleHeight", out.consoleHeight), 60.0f, 2000.0f);
   } catch (const nlohmann::json::exception&) {
     return {};
   }
@@ -68,9 +70,13 @@ Status Settings::save() const {
   std::error_code ignored;
   std::filesystem::create_directories(stateFolder(), ignored);
   COIF_ASSIGN(auto file, SafeFile::create(settingsFile()));
-  file.write(
-      nlohmann::json{{"recent", recent}, {"keys", keys}, {"lightTheme", lightTheme}, {"mayaMouse", mayaMouse}}
-          .dump(2));
+  file.write(nlohmann::json{{"recent", recent},
+                            {"keys", keys},
+                            {"lightTheme", lightTheme},
+                            {"mayaMouse", mayaMouse},
+                            {"console", console},
+                            {"consoleHeight", consoleHeight}}
+                 .dump(2));
   return file.commit();
 }
 

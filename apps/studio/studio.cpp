@@ -14,12 +14,20 @@ namespace coif::studio {
 namespace {
 
 constexpr double kAutosaveSeconds = 30, kFineAfterSeconds = 0.35, kNoteSeconds = 4;
-constexpr std::size_t kDraftSegments = 60000;
+constexpr double kPatienceSeconds = 0.2;  // for a command, before the window goes on without it
 
 /// 1, 2 or 5 times a power of ten, about as large.
 double niceStep(double size) {
   const double power = std::pow(10, std::floor(std::log10(std::max(size, 1e-12))));
   return size < 2 * power ? power : size < 5 * power ? 2 * power : 5 * power;
+}
+
+Camera cameraInHead(const Camera& world, const RigidPose& head) {
+  Camera out = world;
+  out.eye = head.local(world.eye);
+  out.target = head.local(world.target);
+  out.up = head.rotation.transpose() * world.up;
+  return out;
 }
 
 }  // namespace
@@ -32,17 +40,21 @@ Studio::Studio(Window& window, StudioOptions options)
     : window_(window),
       options_(std::move(options)),
       settings_(Settings::load()),
-      trace_(options_.trace),
-      pictures_(std::make_unique<PictureWorker>(&Window::wake)),
+      trace_(options_.trace, options_.began),
+      pictures_(std::make_unique<PictureWorker>(&Window::wake, trace_)),
       leftBehind_(Document::leftBehind()) {
   actions_ = makeActions();
-  settings_.lightTheme ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+  window_.setTheme(settings_.lightTheme);
   view_.settings.habit = settings_.mayaMouse ? MouseHabit::Maya : MouseHabit::Blender;
   tourOpen_ = settings_.recent.empty() && options_.open.empty();
+  if (options_.channel >= 0) channel_ = std::make_unique<Channel>(options_.channel, &Window::wake);
   if (!options_.open.empty()) openPath(options_.open, options_.style);
+  if (options_.open.empty() && leftBehind_.empty()) openExample();
 }
 
-Studio::~Studio() = default;
+Studio::~Studio() {
+  job_.abandon();  // it may look at the document
+}
 
 void Studio::say(std::string message, bool problem) {
   message_ = std::move(message);
@@ -50,16 +62,46 @@ void Studio::say(std::string message, bool problem) {
   if (problem) note_ = message_, noteUntil_ = secondsNow() + kNoteSeconds;
 }
 
-void Studio::run(const std::string& command, const CommandArguments& arguments) {
-  if (!document_) return say("open a head or a document first", true);
+void Studio::run(const std::string& command, const CommandArguments& arguments, const Done& done) {
+  const auto over = [this, done](const std::string& problem) {
+    if (!problem.empty()) say(problem, true);
+    if (done) done(problem);
+  };
+  if (!document_) return over("open a head or a document first");
+  if (waitsForJob()) return over(message_);
   const Trace::Span span(trace_, "command");
-  const std::size_t before = document_->editor.undoCount();
-  if (const Status status = document_->editor.run(command, arguments); !status.ok()) {
-    return say(status.error().text(), true);
+  Editor& editor = document_->editor;
+  const std::size_t before = editor.undoCount();
+  if (command == "undo" || command == "redo") {
+    const Status status = editor.run(command, arguments);
+    if (status.ok()) ran(command, arguments, before);
+    return over(status.ok() ? "" : status.error().text());
   }
-  const CommandInfo* info = findCommand(command);
-  say(info->label);
-  if (command == "undo" || command == "redo" || document_->editor.undoCount() > before) {
+  // What is quick is done when this returns; what is not goes on beside the window.
+  job_.start(
+      findCommand(command) != nullptr ? findCommand(command)->label : command,
+      [this, over, &editor, command, arguments, before](const Context& context) -> Job::Finish {
+        auto prepared =
+            std::make_shared<Result<PreparedCommand>>(editor.prepare(command, arguments, context));
+        return [this, over, &editor, command, arguments, before, prepared] {
+          if (!prepared->ok()) return over(prepared->error().text());
+          const Status taken = editor.commit(std::move(**prepared));
+          if (taken.ok()) ran(command, arguments, before);
+          over(taken.ok() ? "" : taken.error().text());
+        };
+      },
+      kPatienceSeconds);
+}
+
+bool Studio::waitsForJob() {
+  if (!job_.busy()) return false;
+  say(job_.what() + " is still running: wait, or cancel it", true);
+  return true;
+}
+
+void Studio::ran(const std::string& command, const CommandArguments& arguments, std::size_t stepsBefore) {
+  say(findCommand(command)->label);
+  if (command == "undo" || command == "redo" || document_->editor.undoCount() > stepsBefore) {
     if (!options_.pythonLog.empty()) {
       std::ofstream(options_.pythonLog, std::ios::app) << pythonLine(command, arguments) << "\n";
     }
@@ -70,18 +112,35 @@ void Studio::run(const std::string& command, const CommandArguments& arguments) 
 }
 
 void Studio::openPath(const std::filesystem::path& path, const std::string& style) {
-  if (opening_.valid()) return say("a file is being opened already", true);
-  openingName_ = path.filename().string();
-  opening_ = std::async(std::launch::async, [path, style] {
-    auto made = Document::open(path, style, {});
-    Window::wake();
-    return made;
+  if (waitsForJob()) return;
+  job_.start(
+      "Opening " + path.filename().string(), [this, path, style](const Context& context) -> Job::Finish {
+        const Trace::Span span(trace_, "open");
+        auto made = std::make_shared<Result<std::unique_ptr<Document>>>(Document::open(path, style, context));
+        return [this, made] { made->ok() ? adopt(std::move(**made)) : say(made->error().text(), true); };
+      });
+}
+
+void Studio::recover(const std::filesystem::path& autosave) {
+  job_.start("Recovering", [this, autosave](const Context&) -> Job::Finish {
+    auto made = std::make_shared<Result<std::unique_ptr<Document>>>(Document::recover(autosave));
+    return [this, made] { made->ok() ? adopt(std::move(**made)) : say(made->error().text(), true); };
+  });
+}
+
+void Studio::openExample() {
+  job_.start("Opening the example", [this](const Context& context) -> Job::Finish {
+    const Trace::Span span(trace_, "open the example");
+    auto made = std::make_shared<Result<std::unique_ptr<Document>>>(Document::openExample(context));
+    return [this, made] { made->ok() ? adopt(std::move(**made)) : say(made->error().text(), true); };
   });
 }
 
 void Studio::adopt(std::unique_ptr<Document> document) {
   document_ = std::move(document);
   tool_.reset(), forgetAttempt();
+  player_.reset();
+  played_.reset(), playedMesh_.reset();
   lastCommand_.clear();
   const Scene& scene = document_->editor.scene();
   view_.upAxis = scene.upAxis;
@@ -111,11 +170,17 @@ void Studio::saveTo(const std::filesystem::path& path) {
 }
 
 void Studio::exportTo(const std::filesystem::path& path) {
-  if (!document_) return;
-  Evaluation evaluation;
-  const auto report = evaluation.exportTo(document_->editor.scene(), path);
-  if (!report.ok()) return say(report.error().text(), true);
-  say("exported " + path.string());
+  if (!document_ || waitsForJob()) return;
+  auto scene = std::make_shared<const Scene>(document_->editor.scene());
+  job_.start("Exporting " + path.filename().string(),
+             [this, scene, path](const Context& context) -> Job::Finish {
+               Evaluation evaluation;
+               const auto report = evaluation.exportTo(*scene, path, {}, context);
+               const std::string problem = report.ok() ? "" : report.error().text();
+               return [this, path, problem] {
+                 problem.empty() ? say("exported " + path.string()) : say(problem, true);
+               };
+             });
 }
 
 void Studio::autosave() {
@@ -144,10 +209,12 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   const LookSettings look = shownLook();
   PictureRequest request;
   auto scene = std::make_shared<Scene>(editor.scene());
-  if (attempt_) scene->hairMesh = *attempt_;
-  request.revision = attempt_ ? hashCombine(editor.revision(), attemptNumber_) : editor.revision();
+  if (attempt_ || playedMesh_) scene->hairMesh = shownMesh();
+  const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
+  request.revision = state != 0 ? hashCombine(editor.revision(), state) : editor.revision();
   request.scene = std::move(scene);
-  request.camera = view_.camera;
+  request.camera = played_ ? cameraInHead(view_.camera, played_->pose) : view_.camera;
+  request.draft = !fine;
   request.surface = document_->head;
   request.strands = s.showStrands;
   request.head = s.showHead && headInPicture();
@@ -157,7 +224,6 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   options.width = std::max(view_.width() / reduce, 8);
   options.height = std::max(view_.height() / reduce, 8);
   options.subframes = fine ? 3 : 1;
-  options.maxSegments = fine ? 0 : kDraftSegments;
   options.hairColor = look.hairColor;
   options.fibre = fibreOf(look);
   options.shading = s.shading;
@@ -179,6 +245,7 @@ void Studio::askForPicture(bool moving) {
     for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
   }
   if (attempt_) key = hashCombine(key, attemptNumber_);
+  if (played_) key = hashCombine(key, hashCombine(played_->frame, 1));
   const LookSettings look = shownLook();
   for (double x : {double(look.hairColor.x()), double(look.hairColor.y()), double(look.hairColor.z()),
                    look.longitudinalRoughness, look.azimuthalRoughness, look.light.azimuthDeg,
@@ -188,6 +255,7 @@ void Studio::askForPicture(bool moving) {
   }
   const bool changed = key != askedKey_;
   if (changed) askedKey_ = key, lastChange_ = secondsNow(), fine_ = false;
+  const Trace::Span span(trace_, "ask for a picture");
   const bool rested =
       !moving && !fine_ && !pictures_->busy() && secondsNow() - lastChange_ > kFineAfterSeconds;
   if (!fine_ && !rested) window_.wakeWithin(kFineAfterSeconds);
@@ -222,29 +290,32 @@ void Studio::takeKeys() {
 
 bool Studio::frame() {
   const Trace::Span span(trace_, "frame");
-  if (opening_.valid() && opening_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    auto made = opening_.get();
-    made.ok() ? adopt(std::move(*made)) : say(made.error().text(), true);
-  }
+  job_.poll();
   for (const std::string& path : window_.takeDropped()) openPath(path, options_.style);
   takePictures();
+  takeMotion();
+  takeScripts();
   drawMenus();
   drawPanels();
   const bool moving = view_.navigate(!tool_ || !tool_->usesWheel()) | turnTable();
   if (document_) {
     const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");
-      const HairMesh& shown = attempt_ ? *attempt_ : document_->editor.mesh();
-      view_.update(shown, hashCombine(document_->editor.revision(), attempt_ ? attemptNumber_ : 0),
-                   document_->editor.state(), document_->head.get());
+      const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
+      view_.update(shownMesh(), hashCombine(document_->editor.revision(), state), document_->editor.state(),
+                   document_->head.get());
     };
     project();
     if (!takeTools()) takeKeys();
     if (document_) {  // a key may have opened another
+      // A head that moves is drawn by a camera that moves the other way.
+      const Camera worldCamera = view_.camera;
+      if (playedMesh_) view_.camera = cameraInHead(worldCamera, played_->pose);
       project();
       drawUnderView();
       view_.drawPicture(window_.canvas().texture());
       drawOverView();
+      view_.camera = worldCamera;
     }
   } else {
     takeKeys();

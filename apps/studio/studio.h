@@ -8,8 +8,11 @@
 
 #include "actions.h"
 #include "brush_tool.h"
+#include "console.h"
 #include "document.h"
+#include "job.h"
 #include "modal_tool.h"
+#include "motion_player.h"
 #include "picture_worker.h"
 #include "select_tool.h"
 #include "settings.h"
@@ -20,10 +23,13 @@
 namespace coif::studio {
 
 struct StudioOptions {
-  std::filesystem::path open;       ///< a .coif document or a head; empty: the example
-  std::string style = "bob";        ///< modelled on a head that is opened
-  std::filesystem::path trace;      ///< Chrome trace, written at the end
-  std::filesystem::path pythonLog;  ///< each command that is done, as a line of Python
+  std::filesystem::path open;    ///< a .coif document or a head; empty: the example
+  std::string style = "bob";     ///< modelled on a head that is opened
+  std::filesystem::path trace;   ///< Chrome trace, written at the end
+  int channel = -1;              ///< a socket to the Python process that opened the studio; -1: none
+  std::filesystem::path script;  ///< of Python, run once the document is open
+  Trace::Time began = std::chrono::steady_clock::now();  ///< of the program, for the trace
+  std::filesystem::path pythonLog;                       ///< each command that is done, as a line of Python
 };
 
 /// Seconds of a clock that only goes forward.
@@ -44,7 +50,13 @@ class Studio {
 
  private:
   // Commands and files.
-  void run(const std::string& command, const CommandArguments& arguments = {});
+  /// `done` is told what is wrong, or nothing, when the command is done: at once or after a while.
+  using Done = std::function<void(const std::string& problem)>;
+  void run(const std::string& command, const CommandArguments& arguments = {}, const Done& done = {});
+  void ran(const std::string& command, const CommandArguments& arguments, std::size_t stepsBefore);
+  bool waitsForJob();
+  void openExample();
+  void recover(const std::filesystem::path& autosave);
   void openPath(const std::filesystem::path& path, const std::string& style);
   void adopt(std::unique_ptr<Document> document);
   void saveTo(const std::filesystem::path& path);
@@ -58,6 +70,7 @@ class Studio {
   /// What the command would do becomes the mesh that is shown.
   void show(const std::string& command, const CommandArguments& arguments);
   void forgetAttempt();
+  const HairMesh& shownMesh() const;  ///< the tool's, the player's, else the document's
   void followTool();
   void followBrush();
   bool takeTools();  ///< true: this frame's keys were the tool's
@@ -74,6 +87,8 @@ class Studio {
   std::vector<Action> selectActions();
   std::vector<Action> toolActions();
   std::vector<Action> viewActions();
+  std::vector<Action> motionActions();  // motion_panel.cpp
+  std::vector<Action> pythonActions();  // scripting.cpp
   std::vector<Action> helpActions();
   std::vector<MenuEntry> entries() const;
   std::string keyOf(const std::string& name) const;
@@ -84,6 +99,7 @@ class Studio {
   // A frame's parts.
   void takeKeys();
   void takePictures();
+  void takeMotion();
   void askForPicture(bool moving);
   void autosave();
   PictureRequest pictureRequest(bool fine) const;
@@ -117,6 +133,25 @@ class Studio {
   void drawStagePanel();
   void drawPythonPanel();
   void drawStatusLine();
+  void drawProgress();
+
+  // Python (scripting.cpp, console_panel.cpp).
+  struct Request {
+    nlohmann::json message;
+    std::function<void(const nlohmann::json&)> answer;
+  };
+  void takeScripts();
+  void answer(const Request& request);
+  nlohmann::json stateFor(const std::string& what) const;
+  void runScript(const std::filesystem::path& path);
+  float drawConsole(const ImVec2& at, const ImVec2& size);  ///< at the bottom of this box; its height
+
+  // Hair in motion (motion_panel.cpp).
+  void drawMotionPanel();
+  MotionInput motionInput() const;
+  void playMotion();
+  void keepMotion();
+  void bakeMotion(const std::filesystem::path& path);
   void drawPalette();
   void drawSelectDialog();  // select_dialog.cpp
   /// False, and says why, for what is no list of ids.
@@ -127,7 +162,7 @@ class Studio {
   void drawTour();
   bool drawArgument(const CommandArgument& argument, CommandArguments& values) const;
 
-  enum class PathUse { None, Open, SaveAs, Export, Screenshot, Turntable };
+  enum class PathUse { None, Open, SaveAs, Export, Screenshot, Turntable, BakeMotion, RunScript, TakeMesh };
   void askPath(PathUse use);
   void usePath(const std::filesystem::path& path);
 
@@ -137,10 +172,20 @@ class Studio {
   std::vector<Action> actions_;
   Trace trace_;
   std::unique_ptr<Document> document_;
-  std::future<Result<std::unique_ptr<Document>>> opening_;
-  std::string openingName_;
+  Job job_{&Window::wake};
+  MotionPlayer player_{&Window::wake};
+  HeadMoveSettings headMove_;
+  double bakeSeconds_ = 4;
+  std::optional<MotionFrame> played_;  // what the player shows
+  std::optional<HairMesh> playedMesh_;
   std::unique_ptr<PictureWorker> pictures_;
   Viewport view_;
+  Console console_{&Window::wake};
+  std::string typed_;
+  std::vector<std::string> typedBefore_;
+  int typedAt_ = -1;
+  std::unique_ptr<Channel> channel_;  // to the process that opened the studio
+  std::vector<Request> requests_;
   SelectTool select_;
   BrushTool brush_;
   ToolSettings tools_;

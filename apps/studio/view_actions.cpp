@@ -113,7 +113,7 @@ std::vector<Action> Studio::viewActions() {
   list.push_back({"light_theme", "Light theme", "View", "", "Else a dark one.",
                   [this] {
                     settings_.lightTheme = !settings_.lightTheme;
-                    settings_.lightTheme ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+                    window_.setTheme(settings_.lightTheme);
                     (void)settings_.save();
                   },
                   [this] { return settings_.lightTheme; }});

@@ -5,6 +5,10 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <utility>
+
+#include "theme.h"
+
 namespace coif::studio {
 namespace {
 
@@ -54,8 +58,12 @@ Result<std::unique_ptr<Window>> Window::open(int width, int height, const std::s
   float x = 1, y = 1;
   glfwGetWindowContentScale(self->window_, &x, &y);
   self->scale_ = x > 0 ? x : 1;
-  ImGui::GetStyle().ScaleAllSizes(self->scale_);
-  ImGui::GetIO().FontGlobalScale = self->scale_;
+  ImGui::GetIO().ConfigInputTextCursorBlink = false;  // a blinking cursor would draw an idle window
+  glfwSetWindowContentScaleCallback(self->window_, [](GLFWwindow* window, float to, float) {
+    auto* of = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    of->scale_ = to > 0 ? to : 1;
+    of->themeOld_ = true;
+  });
   ImGui_ImplGlfw_InitForOpenGL(self->window_, true);
   ImGui_ImplOpenGL3_Init("#version 330");
   return self;
@@ -90,7 +98,8 @@ void Window::run(const std::function<bool()>& frame, const std::function<bool()>
     }
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    if (width == 0 || height == 0) continue;  // minimised
+    if (width == 0 || height == 0 || glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) continue;
+    refreshTheme();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -101,8 +110,19 @@ void Window::run(const std::function<bool()>& frame, const std::function<bool()>
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
     ++frames_;
-    if (ImGui::IsAnyMouseDown() || ImGui::GetIO().WantTextInput) pending = std::max(pending, 1);
+    if (ImGui::IsAnyMouseDown()) wakeWithin(0.05);  // held buttons repeat
   }
+}
+
+void Window::setTheme(bool light) {
+  themeOld_ |= light != light_;
+  light_ = light;
+}
+
+void Window::refreshTheme() {
+  if (!std::exchange(themeOld_, false)) return;
+  applyTheme(light_, scale_);
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // made again, fonts too, by the next NewFrame
 }
 
 void Window::wake() {

@@ -39,16 +39,19 @@ class Window {
   /// Paths dropped on the window since the last call.
   std::vector<std::string> takeDropped();
   float scale() const { return scale_; }
+  void setTheme(bool light);  ///< from the next frame on
   std::uint64_t framesDrawn() const { return frames_; }
 
  private:
   Window() = default;
+  void refreshTheme();
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<WindowCanvas> canvas_;
   Keys keys_;
   std::vector<std::string> dropped_;
   std::string title_, layoutFile_;
   float scale_ = 1;
+  bool light_ = false, themeOld_ = true;
   double timeout_ = 0;  // 0: sleep until something happens
   std::uint64_t frames_ = 0;
 };

@@ -16,5 +16,6 @@ coif.Error whose text is one sentence naming the file, line or element at fault.
 from . import _coif
 from ._coif import *  # noqa: F401,F403 - the extension's public names are the package's
 from ._coif import __version__
+from ._studio import studio
 
-__all__ = sorted(name for name in vars(_coif) if not name.startswith("_"))
+__all__ = sorted([name for name in vars(_coif) if not name.startswith("_")] + ["studio"])

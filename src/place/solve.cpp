@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "place/cg.h"
-#include "place/direct.h"
 
 namespace coif::placing {
 
@@ -48,7 +47,8 @@ Status refine(const PlaceSystem& system, const BoxInverse& box, const Block& str
   return {};
 }
 
-// From a few runs of `coif bench place`, not a scan: below this many operations in its factor a direct solve beats the iteration.
+// From a few runs of `coif bench place`, not a scan: below this many operations in its factor a direct solve
+// beats the iteration.
 constexpr double kDirectFlops = 2e8;
 constexpr double kDirectEntries = 2e6;
 
@@ -60,29 +60,34 @@ std::unique_ptr<Preconditioner> preconditionerFor(PlaceSolver solver, const Csr&
 
 }  // namespace
 
-Result<Solution> solve(const HairMesh& mesh, const PlaceSystem& system, const Block& strain, double target,
-                       const PlaceOptions& options, const Context& context) {
-  Solution solution;
-  solution.solver = options.solver;
-  solution.delta = Block::Zero(Eigen::Index(system.unknowns()), strain.cols());
+Result<Prepared> prepare(const HairMesh& mesh, const PlaceSystem& system, const PlaceOptions& options,
+                         const Context& context) {
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "placement was cancelled");
-  const BoxInverse box(mesh, system);
-
-  std::optional<DirectSolver> direct;
-  if (solution.solver == PlaceSolver::Direct) {
-    direct = DirectSolver::make(system, kMaxFactorEntries, std::numeric_limits<double>::infinity());
-    if (!direct) {
+  Prepared out{BoxInverse(mesh, system), std::nullopt, options.solver};
+  if (out.solver == PlaceSolver::Direct) {
+    out.direct = DirectSolver::make(system, kMaxFactorEntries, std::numeric_limits<double>::infinity());
+    if (!out.direct) {
       return makeError(ErrorCode::TooLarge, "the direct solver's factor would exceed " +
                                                 std::to_string(long(kMaxFactorEntries)) + " entries");
     }
-  } else if (solution.solver == PlaceSolver::Auto) {
-    if (!box.exact()) direct = DirectSolver::make(system, kDirectEntries, kDirectFlops);
-    solution.solver = direct ? PlaceSolver::Direct : PlaceSolver::Tensor;
+  } else if (out.solver == PlaceSolver::Auto) {
+    if (!out.box.exact()) out.direct = DirectSolver::make(system, kDirectEntries, kDirectFlops);
+    out.solver = out.direct ? PlaceSolver::Direct : PlaceSolver::Tensor;
   }
-  if (direct) {
+  return out;
+}
+
+Result<Solution> solve(const PlaceSystem& system, const Prepared& prepared, const Block& strain,
+                       double target, const PlaceOptions& options, const Context& context) {
+  const BoxInverse& box = prepared.box;
+  Solution solution;
+  solution.solver = prepared.solver;
+  solution.delta = Block::Zero(Eigen::Index(system.unknowns()), strain.cols());
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "placement was cancelled");
+  if (prepared.direct) {
     COIF_TRY(refine(system, box, strain, target, options.solver == PlaceSolver::Direct ? 2 : 1, context,
                     solution, [&](const Block& r, Block& delta) {
-                      direct->correct(r, delta, context);
+                      prepared.direct->correct(r, delta, context);
                       return Pass{};
                     }));
     return solution;

@@ -1,7 +1,11 @@
 // One solve: choose the solver, run it, bound the error.
 #pragma once
 
+#include <optional>
+
 #include "coif/place/place.h"
+#include "place/box.h"
+#include "place/direct.h"
 #include "place/system.h"
 
 namespace coif::placing {
@@ -15,9 +19,19 @@ struct Solution {
   double condition = 0;  ///< of the preconditioned matrix, see PlaceReport
 };
 
-/// Minimises ‖strain + G δ‖² to an error of at most `target` > 0. Errors: TooLarge, Cancelled.
-Result<Solution> solve(const HairMesh& mesh, const PlaceSystem& system, const Block& strain, double target,
-                       const PlaceOptions& options, const Context& context);
+/// What a solve needs that depends on topology and pins alone: made once, used for every state of the mesh.
+struct Prepared {
+  BoxInverse box;
+  std::optional<DirectSolver> direct;
+  PlaceSolver solver = PlaceSolver::Auto;  ///< the one that will run
+};
+/// Errors: TooLarge, Cancelled.
+Result<Prepared> prepare(const HairMesh& mesh, const PlaceSystem& system, const PlaceOptions& options,
+                         const Context& context);
+
+/// Minimises ‖strain + G δ‖² to an error of at most `target` > 0. Errors: Cancelled.
+Result<Solution> solve(const PlaceSystem& system, const Prepared& prepared, const Block& strain,
+                       double target, const PlaceOptions& options, const Context& context);
 
 Status checkOptions(const PlaceOptions& options);
 

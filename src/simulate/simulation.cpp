@@ -32,7 +32,7 @@ struct Simulation::Impl {
   std::size_t frame = 0;
   std::vector<Vec3> positions;
 
-  std::optional<DistanceBand> band;
+  std::shared_ptr<const DistanceBand> band;
   std::vector<std::unique_ptr<Collider>> capsules;
   std::vector<std::uint8_t> withHead;  // by collider of the collision field
   std::unique_ptr<CollisionField> collisions;
@@ -92,8 +92,12 @@ Status Simulation::Impl::makeCollisions(const Context& context) {
   if (world.head) {
     DistanceBandOptions bandOptions;
     bandOptions.reach = std::max(3 * world.head->size() / 64, 2 * thickness);
-    COIF_ASSIGN(DistanceBand made, DistanceBand::build(*world.head, bandOptions, context));
-    band = std::move(made);
+    if (world.band && world.band->reach() >= bandOptions.reach) {
+      band = world.band;
+    } else {
+      COIF_ASSIGN(DistanceBand made, DistanceBand::build(*world.head, bandOptions, context));
+      band = std::make_shared<const DistanceBand>(std::move(made));
+    }
     report.band = band->report();
     collisions->addCollider(*band);
     withHead.push_back(1);
@@ -320,6 +324,10 @@ std::span<const Vec3> Simulation::positions() const {
 RigidPose Simulation::pose() const {
   return impl_->path.pose(double(impl_->frame));
 }
+std::shared_ptr<const DistanceBand> Simulation::band() const {
+  return impl_->band;
+}
+
 const SimulationReport& Simulation::report() const {
   return impl_->report;
 }

@@ -8,6 +8,7 @@
 
 #include "coif/hairmesh/history.h"
 #include "coif/hairmesh/operations.h"
+#include "coif/scalp/example_head.h"
 
 namespace coif {
 namespace {
@@ -166,6 +167,22 @@ TEST(Simulation, GoesOnWithTheSameBytesAfterAnInterruptionAndOnAnyNumberOfThread
   // Contact has kinks that Newton may circle: below 2 % of the 16 chains × 50 steps.
   EXPECT_LE((*whole)->report().unconverged, 16u);
   for (const FieldUse& use : (*whole)->report().fields) EXPECT_GT(use.steps, 0u) << use.name;
+}
+
+TEST(Simulation, AHeadThatWasMeasuredIsNotMeasuredAgain) {
+  const Surface head(makeExampleHead(16));
+  SimulationWorld world = centimetres();
+  world.head = &head;
+  const HairMesh mesh = patch(Vec3(0.4, -1, 0));
+  auto first = Simulation::create(mesh, {}, world);
+  ASSERT_TRUE(first.ok()) << first.error().text();
+  ASSERT_NE((*first)->band(), nullptr);
+  world.band = (*first)->band();
+  auto second = Simulation::create(mesh, {}, world);
+  EXPECT_EQ((*second)->band(), (*first)->band());
+  run(**first, 4);
+  run(**second, 4);
+  EXPECT_EQ((*first)->state(), (*second)->state());
 }
 
 TEST(Simulation, ACancelledFrameLeavesTheLastOne) {

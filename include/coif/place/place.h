@@ -5,6 +5,7 @@
 // are found by union-find; their mean is pinned to the line from root to tip.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,28 @@ struct PlaceReport {
 /// proven (docs/place.md), not estimated; the cost of Tensor is ~ unknowns × iterations, of Direct ~
 /// unknowns² on a thick mesh. Same bytes for any number of threads.
 Result<PlaceReport> place(HairMesh& mesh, const PlaceOptions& options = {}, const Context& context = {});
+
+/// place() again and again on a mesh whose topology and pins stay, as while a vertex is dragged: the matrix is
+/// factored once. Same answers as place(), to the bit. Const calls may run side by side.
+class Placer {
+ public:
+  /// Errors: those of place() but Degenerate. Cost: what place() does before its first iteration.
+  static Result<Placer> create(const HairMesh& mesh, const PlaceOptions& options = {},
+                               const Context& context = {});
+  ~Placer();
+  Placer(Placer&&) noexcept;
+  Placer& operator=(Placer&&) noexcept;
+
+  /// Whether `mesh` has the topology and pins that this was made for. Cost: linear in the mesh.
+  bool fits(const HairMesh& mesh) const;
+  /// As place(). Errors: also InvalidArgument for a mesh that does not fit.
+  Result<PlaceReport> place(HairMesh& mesh, const Context& context = {}) const;
+
+ private:
+  struct Impl;
+  explicit Placer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 /// E of the present positions.
 double placementEnergy(const HairMesh& mesh);

@@ -18,6 +18,9 @@
 
 namespace coif {
 
+/// What a command would leave: made by prepare(), taken over by commit().
+struct PreparedCommand;
+
 /// What undo restores besides the mesh.
 struct EditState {
   Selection selection;
@@ -27,6 +30,7 @@ struct EditState {
   Vec3 mirrorPoint = Vec3::Zero(), mirrorNormal = Vec3::UnitX();
   StrandSettings strands;
   LookSettings look;
+  DynamicsSettings dynamics;
   bool operator==(const EditState&) const;
 };
 
@@ -37,7 +41,7 @@ class Editor {
   Editor(Editor&&) noexcept;
   Editor& operator=(Editor&&) noexcept;
 
-  /// The document as it stands. scene().strands and .look are those of state().
+  /// The document as it stands. scene().strands, .look and .dynamics are those of state().
   const Scene& scene() const { return scene_; }
   const HairMesh& mesh() const { return scene_.hairMesh; }
   const EditState& state() const { return state_; }
@@ -49,6 +53,12 @@ class Editor {
   /// the wrong kind or out of range; nothing suitable selected), and those of the operation. On an error
   /// nothing has changed. Cost: the operation's, and one placement when the mesh changed.
   Status run(std::string_view command, const CommandArguments& arguments = {}, const Context& context = {});
+  /// run() in two halves, for a command that takes its time: the first may run on a thread of its own while
+  /// nothing else changes the editor; the second is quick. Not for undo and redo. Errors: as run(); commit
+  /// refuses what was prepared for another revision.
+  Result<PreparedCommand> prepare(std::string_view command, const CommandArguments& arguments = {},
+                                  const Context& context = {}) const;
+  Status commit(PreparedCommand prepared);
   /// The mesh as the command would leave it, and nothing done: what a tool shows before it is confirmed.
   /// Errors and cost as run(); NotFound for undo and redo.
   Result<HairMesh> attempt(std::string_view command, const CommandArguments& arguments = {},
@@ -80,14 +90,8 @@ class Editor {
     bool meshChanged = false;
     std::shared_ptr<const EditState> before, after;  // shared between neighbouring steps where equal
   };
-  struct Outcome {
-    HairMesh mesh;
-    EditState state;
-    bool meshChanged = false;
-  };
-  Result<Outcome> outcomeOf(std::string_view command, const CommandArguments& arguments,
-                            const Context& context) const;
-  void record(const std::string& label, std::string python, const Outcome& outcome);
+  struct PlacerCache;
+  void record(const PreparedCommand& outcome);
   Status undo();
   Status redo();
   void adopt(const EditState& state);
@@ -99,6 +103,15 @@ class Editor {
   std::vector<Step> steps_;
   std::size_t done_ = 0, savedAt_ = 0;
   std::uint64_t revision_ = 0;
+  std::unique_ptr<PlacerCache> placer_;  // while only vertices move, the matrix is factored once
+};
+
+struct PreparedCommand {
+  std::string label, python;
+  std::uint64_t revision = 0;  ///< of the editor that it was prepared for
+  HairMesh mesh;
+  EditState state;
+  bool meshChanged = false;
 };
 
 }  // namespace coif

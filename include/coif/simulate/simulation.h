@@ -31,6 +31,8 @@ struct SimulationWorld {
   UpAxis upAxis = UpAxis::Y;
   HeadMotion motion;
   double framesPerSecond = 24;
+  /// The head's distances as an earlier Simulation measured them: used where they reach far enough.
+  std::shared_ptr<const DistanceBand> band = {};
 };
 
 struct FieldUse {
@@ -78,6 +80,8 @@ class Simulation {
   Status restore(std::span<const std::byte> state);
 
   const SimulationReport& report() const;
+  /// The head's distances, for the next Simulation of the same head; null without collisions.
+  std::shared_ptr<const DistanceBand> band() const;
 
  private:
   struct Impl;

@@ -61,6 +61,8 @@ std::vector<Command> meshCommands();
 std::vector<Command> moveCommands();
 std::vector<Command> brushCommands();
 std::vector<Command> settingCommands();
+std::vector<Command> motionCommands();
+std::vector<Command> fileCommands();
 
 /// Undo and redo, then all of the above; undo and redo have no `run`.
 const std::vector<Command>& commands();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "coif/place/place.h"
+#include "scene/dynamics_json.h"
 #include "scene/editor/command_table.h"
 
 namespace coif {
@@ -11,7 +13,7 @@ namespace coif {
 bool EditState::operator==(const EditState& o) const {
   return selection == o.selection && hidden == o.hidden && frozen == o.frozen && symmetric == o.symmetric &&
          mirrorPoint == o.mirrorPoint && mirrorNormal == o.mirrorNormal && strands == o.strands &&
-         look == o.look;
+         look == o.look && dynamics == o.dynamics;
 }
 
 namespace {
@@ -23,18 +25,46 @@ void dropMissing(const HairMesh& mesh, EditState& state) {
   std::erase_if(state.frozen, [&](VertexId id) { return mesh.indexOf(id) == kNone; });
 }
 
+bool sameTopology(const HairMesh& a, const HairMesh& b) {
+  return std::ranges::equal(a.bundles(), b.bundles()) &&
+         std::ranges::equal(a.vertices(), b.vertices(), {}, &HairVertex::id, &HairVertex::id);
+}
+
 }  // namespace
 
-Editor::Editor(Scene scene) : scene_(std::move(scene)) {
+struct Editor::PlacerCache {
+  std::mutex mutex;
+  std::shared_ptr<const Placer> placer;
+
+  Status place(HairMesh& mesh, const Context& context) {
+    std::shared_ptr<const Placer> own;
+    {
+      const std::scoped_lock lock(mutex);
+      own = placer;
+    }
+    if (!own || !own->fits(mesh)) {
+      COIF_ASSIGN(Placer made, Placer::create(mesh, {}, context));
+      own = std::make_shared<const Placer>(std::move(made));
+      const std::scoped_lock lock(mutex);
+      placer = own;
+    }
+    COIF_ASSIGN(const PlaceReport placed, own->place(mesh, context));
+    (void)placed;
+    return {};
+  }
+};
+
+Editor::Editor(Scene scene) : scene_(std::move(scene)), placer_(std::make_unique<PlacerCache>()) {
   state_.strands = scene_.strands;
   state_.look = scene_.look;
+  state_.dynamics = scene_.dynamics;
 }
 Editor::~Editor() = default;
 Editor::Editor(Editor&&) noexcept = default;
 Editor& Editor::operator=(Editor&&) noexcept = default;
 
-Result<Editor::Outcome> Editor::outcomeOf(std::string_view name, const CommandArguments& given,
-                                          const Context& context) const {
+Result<PreparedCommand> Editor::prepare(std::string_view name, const CommandArguments& given,
+                                        const Context& context) const {
   const editor::Command* command = editor::find(name);
   if (command == nullptr || !command->run) {
     return makeError(ErrorCode::NotFound, "there is no command '" + std::string(name) + "'");
@@ -42,19 +72,19 @@ Result<Editor::Outcome> Editor::outcomeOf(std::string_view name, const CommandAr
   COIF_ASSIGN(const editor::Arguments arguments, editor::complete(*command, given));
   editor::Work work{scene_.hairMesh, state_, head_, context, scene_.metersPerUnit, scene_.upAxis};
   COIF_TRY(command->run(work, arguments));
-  Outcome outcome{std::move(work.mesh), std::move(work.state), false};
+  PreparedCommand outcome{command->info.label,  pythonLine(name, given), revision_,
+                          std::move(work.mesh), std::move(work.state),   false};
   outcome.meshChanged = !(outcome.mesh == scene_.hairMesh);
-  if (outcome.meshChanged) {
-    COIF_ASSIGN(const PlaceReport placed, place(outcome.mesh, {}, context));
-    (void)placed;
-  }
-  dropMissing(outcome.mesh, outcome.state);
+  if (outcome.meshChanged) COIF_TRY(placer_->place(outcome.mesh, context));
+  const bool sameElements = outcome.state.selection == state_.selection &&
+                            (!outcome.meshChanged || sameTopology(outcome.mesh, scene_.hairMesh));
+  if (!sameElements) dropMissing(outcome.mesh, outcome.state);
   return outcome;
 }
 
 Result<HairMesh> Editor::attempt(std::string_view command, const CommandArguments& arguments,
                                  const Context& context) const {
-  COIF_ASSIGN(Outcome outcome, outcomeOf(command, arguments, context));
+  COIF_ASSIGN(PreparedCommand outcome, prepare(command, arguments, context));
   return std::move(outcome.mesh);
 }
 
@@ -64,21 +94,28 @@ Status Editor::run(std::string_view name, const CommandArguments& given, const C
     (void)none;
     return name == "undo" ? undo() : redo();
   }
-  COIF_ASSIGN(Outcome outcome, outcomeOf(name, given, context));
+  COIF_ASSIGN(PreparedCommand outcome, prepare(name, given, context));
+  return commit(std::move(outcome));
+}
+
+Status Editor::commit(PreparedCommand outcome) {
+  if (outcome.revision != revision_) {
+    return makeError(ErrorCode::InvalidArgument, "the document changed while the command ran");
+  }
   if (!outcome.meshChanged && outcome.state == state_) return {};
-  record(findCommand(name)->label, pythonLine(name, given), outcome);
+  record(outcome);
   scene_.hairMesh = std::move(outcome.mesh);
   if (outcome.meshChanged) scene_.placedHash = meshHash(scene_.hairMesh);
   adopt(outcome.state);
   return {};
 }
 
-void Editor::record(const std::string& label, std::string python, const Outcome& outcome) {
+void Editor::record(const PreparedCommand& outcome) {
   const std::size_t stepsOfMesh = history_.undoCount();
-  if (outcome.meshChanged) history_.record(scene_.hairMesh, outcome.mesh, label);
+  if (outcome.meshChanged) history_.record(scene_.hairMesh, outcome.mesh, outcome.label);
   steps_.resize(done_);
   const bool sharesState = !steps_.empty() && *steps_.back().after == state_;
-  Step step{label, std::move(python), history_.undoCount() > stepsOfMesh,
+  Step step{outcome.label, outcome.python, history_.undoCount() > stepsOfMesh,
             sharesState ? steps_.back().after : std::make_shared<const EditState>(state_), nullptr};
   step.after = outcome.state == state_ ? step.before : std::make_shared<const EditState>(outcome.state);
   steps_.push_back(std::move(step));
@@ -90,6 +127,7 @@ void Editor::adopt(const EditState& state) {
   state_ = state;
   scene_.strands = state_.strands;
   scene_.look = state_.look;
+  scene_.dynamics = state_.dynamics;
   ++revision_;
 }
 
@@ -174,6 +212,7 @@ std::vector<std::byte> Editor::canonicalState() const {
     put(value);
   put(light.followCamera);
   for (int i = 0; i < 3; ++i) put(state_.look.hairColor[i]);
+  putAll(scene::dynamicsJson(state_.dynamics).dump());
   return bytes;
 }
 
