@@ -47,7 +47,7 @@ std::vector<Action> Studio::fileActions() {
        "File",
        "Ctrl+Shift+E",
        "Writes strands as USD, glTF or .hair.",
-       ask(PathUse::Export),
+       [this] { exportOpen_ = true; },
        {},
        noDocument},
       {"screenshot", "Screenshot ...", "File", "F12", "Writes a picture of the window.",
@@ -92,7 +92,10 @@ std::vector<Action> Studio::helpActions() {
   return {
       {"palette", "Find a command ...", "Help", "F3 Ctrl+Space", "Finds any command by its name.",
        [this] { paletteOpen_ = true, paletteText_.clear(); }},
-      {"tour", "Guided tour", "Help", "F1", "The editor in two minutes.", [this] { tourOpen_ = true; }},
+      {"tour", "Guided tour", "Help", "F1", "The editor in two minutes.",
+       [this] { tourOpen_ = true, tourStep_ = 0; }},
+      {"key_map", "Keys ...", "Help", "Ctrl+F1", "Shows and changes the keys.",
+       [this] { keyMapOpen_ = true; }},
   };
 }
 

@@ -1,9 +1,10 @@
 // A Python process beside the studio: lines of JSON both ways over a socket.
 //
-// Python asks, with an id: {"id": 1, "run": "extrude", "arguments": {"distance": 0.5}}, "state", "write",
-// "open", "save", "export", "screenshot", "close"; the studio answers {"id": 1, "value": …} or {"id": 1,
-// "error": "a sentence"}. Python tells {"output": text} and {"done": n, "more": false}; the studio tells
-// {"execute": n, "source": text, "name": "file"}. python/coif/_studio.py is the other end.
+// Python asks, with an id: {"id": 1, "run": "extrude", "arguments": {"distance": 0.5}}, "act", "rest",
+// "state", "write", "open", "save", "export", "screenshot", "close"; the studio answers {"id": 1, "value": …}
+// or
+// {"id": 1, "error": "a sentence"}. Python tells {"output": text} and {"done": n, "more": false}; the studio
+// tells {"execute": n, "source": text, "name": "file"}. python/coif/_studio.py is the other end.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// Questions: a path, what to do with what a crash left, whether to save; and the guided tour.
+// Questions: a path, what to do with what a crash left, whether to save.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -100,6 +100,17 @@ void Studio::drawPathDialog() {
     }
   }
   ImGui::EndChild();
+  if (pathUse_ == PathUse::Open) {
+    const std::string now = options_.style.empty() ? "bare roots" : options_.style;
+    ImGui::SetNextItemWidth(160 * window_.scale());
+    if (ImGui::BeginCombo("on a head", now.c_str())) {
+      if (ImGui::Selectable("bare roots", options_.style.empty())) options_.style.clear();
+      for (const std::string_view style : hairstyleNames()) {
+        if (ImGui::Selectable(std::string(style).c_str(), options_.style == style)) options_.style = style;
+      }
+      ImGui::EndCombo();
+    }
+  }
   if (ImGui::Button("OK", {110 * window_.scale(), 0}) || enter) {
     ImGui::CloseCurrentPopup();
     usePath(pathText_);
@@ -163,31 +174,6 @@ void Studio::drawCloseDialog() {
   }
   if (discards) document_->forgetAutosave(), quit_ = true;
   ImGui::EndPopup();
-}
-
-void Studio::drawTour() {
-  if (!tourOpen_ || !leftBehind_.empty()) return;
-  centred(440 * window_.scale());
-  if (ImGui::Begin("Two minutes with Coif", &tourOpen_, ImGuiWindowFlags_NoCollapse)) {
-    ImGui::TextWrapped(
-        "1. Open a head (Ctrl+O) or drop one here: a cage is laid on its scalp and a hairstyle modelled.\n"
-        "2. Middle mouse turns, Shift + middle shifts, the wheel zooms; F frames the selection.\n"
-        "3. 1, 2, 3 choose vertices, edges or faces. Click, drag a box, or Ctrl + drag a lasso.\n"
-        "4. G moves, R rotates, S scales, E extrudes the selected tips; X, Y, Z hold an axis; type a "
-        "number.\n"
-        "5. Y parts the selected edges there and above; M joins vertices again.\n"
-        "6. Inner vertices are placed by themselves. One that you move is pinned.\n"
-        "7. F3 finds any command; Ctrl+Z takes back as far as you like.\n"
-        "8. Ctrl+Shift+E exports strands as USD, glTF or .hair.");
-    for (const std::string_view style : hairstyleNames()) {
-      bool chosen = options_.style == style;
-      if (ImGui::RadioButton(std::string(style).c_str(), chosen)) options_.style = style;
-      ImGui::SameLine();
-    }
-    ImGui::NewLine();
-    ImGui::TextDisabled("The hairstyle that a head is opened with.");
-  }
-  ImGui::End();
 }
 
 }  // namespace coif::studio

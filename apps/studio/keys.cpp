@@ -8,7 +8,7 @@
 namespace coif::studio {
 namespace {
 
-int codeOf(const std::string& name) {
+const std::map<std::string, int>& namedKeys() {
   static const std::map<std::string, int> named = {{"NumpadAdd", GLFW_KEY_KP_ADD},
                                                    {"NumpadSubtract", GLFW_KEY_KP_SUBTRACT},
                                                    {"NumpadDecimal", GLFW_KEY_KP_DECIMAL},
@@ -19,6 +19,11 @@ int codeOf(const std::string& name) {
                                                    {"Space", GLFW_KEY_SPACE},
                                                    {"Delete", GLFW_KEY_DELETE},
                                                    {"Backspace", GLFW_KEY_BACKSPACE}};
+  return named;
+}
+
+int codeOf(const std::string& name) {
+  const auto& named = namedKeys();
   if (const auto found = named.find(name); found != named.end()) return found->second;
   if (name.size() == 7 && name.starts_with("Numpad")) return GLFW_KEY_KP_0 + (name.back() - '0');
   if (name.size() == 1) return name.front();  // GLFW's codes of letters and digits are their ASCII codes
@@ -48,6 +53,30 @@ bool Keys::pressedOne(const std::string& key) const {
   return code != GLFW_KEY_UNKNOWN && std::ranges::any_of(downs_, [&](const Down& d) {
            return d.key == code && d.modifiers == modifiers;
          });
+}
+
+std::string Keys::lastName() const {
+  const auto down =
+      std::ranges::find_if(downs_.rbegin(), downs_.rend(), [](const Down& d) { return d.key != 0; });
+  if (down == downs_.rend()) return {};
+  std::string name;
+  const auto& named = namedKeys();
+  const auto known =
+      std::ranges::find_if(named, [&](const auto& entry) { return entry.second == down->key; });
+  if (known != named.end()) {
+    name = known->first;
+  } else if (down->key >= GLFW_KEY_F1 && down->key <= GLFW_KEY_F25) {
+    name = "F" + std::to_string(down->key - GLFW_KEY_F1 + 1);
+  } else if (down->key >= GLFW_KEY_KP_0 && down->key <= GLFW_KEY_KP_9) {
+    name = "Numpad" + std::to_string(down->key - GLFW_KEY_KP_0);
+  } else if (down->key > ' ' && down->key < 128) {
+    name = std::string(1, char(down->key));
+  } else {
+    return {};
+  }
+  return std::string(down->modifiers & GLFW_MOD_CONTROL ? "Ctrl+" : "") +
+         (down->modifiers & GLFW_MOD_SHIFT ? "Shift+" : "") + (down->modifiers & GLFW_MOD_ALT ? "Alt+" : "") +
+         name;
 }
 
 std::string Keys::typed() const {

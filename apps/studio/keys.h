@@ -14,6 +14,8 @@ class Keys {
   void character(unsigned codepoint) { downs_.push_back({0, 0, codepoint}); }
   /// What was typed of "0 … 9 . -", and Tab as '\t' and Backspace as '\b', in order.
   std::string typed() const;
+  /// The last combination that went down, as menus write it; empty: none that has a name.
+  std::string lastName() const;
   bool none() const { return downs_.empty(); }
   void clear() { downs_.clear(); }
   /// Whether one of the combinations (spaces between) went down, with just these modifiers.

@@ -1,4 +1,6 @@
 // coif-studio: the editor.
+#include <signal.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 
@@ -6,11 +8,14 @@
 
 int main(int argc, char** argv) {
   using namespace coif::studio;
+  // A full disk or a pipe that is gone is an error of the write, not the end.
+  ::signal(SIGXFSZ, SIG_IGN);
+  ::signal(SIGPIPE, SIG_IGN);
   CLI::App app("Coif Studio: sculpt hairstyles on hair meshes");
   app.footer("Example:\n  coif-studio head.obj --style bob\n");
   app.set_version_flag("--version", std::string("coif-studio ") + COIF_VERSION);
   StudioOptions options;  // its clock starts here
-  std::string size = "1280x800";
+  std::string size;       // else as in the last run
   app.add_option("file", options.open, "A .coif document, or a head: OBJ, PLY, OFF, STL, GLB, glTF or USD");
   app.add_option("--style", options.style, "The hairstyle that a head is opened with; '' for bare roots");
   app.add_option("--size", size, "The window, WIDTHxHEIGHT");
@@ -22,7 +27,9 @@ int main(int argc, char** argv) {
   app.add_option("--channel", options.channel, "A socket to the Python process that opens the studio")
       ->group("");
   CLI11_PARSE(app, argc, argv);
-  int width = 0, height = 0;
+  const Settings remembered = Settings::load();
+  int width = remembered.width, height = remembered.height;
+  if (size.empty()) size = std::to_string(width) + "x" + std::to_string(height);
   if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || width < 200 || height < 100 ||
       width > 16384 || height > 16384) {
     std::cerr << "coif-studio: --size wants WIDTHxHEIGHT of at least 200x100, not '" << size << "'\n";

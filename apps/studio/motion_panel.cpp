@@ -119,7 +119,7 @@ void Studio::bakeMotion(const std::filesystem::path& path) {
 }
 
 void Studio::drawMotionPanel() {
-  if (!ImGui::CollapsingHeader("Motion")) return;
+  if (!header("Motion")) return;
   const float wide = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   if (ImGui::Button(player_.running() ? "Pause###play" : "Play###play", {wide, 0})) playMotion();
   ImGui::SameLine();

@@ -32,6 +32,7 @@ void Studio::drawPanels() {
       drawStrandPanel();
       drawLookPanel();
       drawMotionPanel();
+      drawGroupPanel();
       drawHistoryPanel();
       drawStagePanel();
       drawPythonPanel();
@@ -49,6 +50,16 @@ void Studio::drawPanels() {
   ImGui::End();
   ImGui::PopStyleVar(2);
   view_.place({at.x + (roomy ? left : 0), at.y}, {size.x - (roomy ? left + right : 0), height});
+}
+
+bool Studio::header(const char* label) {
+  ImGui::SetNextItemOpen(settings_.open[label], ImGuiCond_Once);
+  const bool open = ImGui::CollapsingHeader(label);
+  if (ImGui::IsItemToggledOpen()) {
+    settings_.open[label] = open;
+    (void)settings_.save();
+  }
+  return open;
 }
 
 bool Studio::drawArgument(const CommandArgument& argument, CommandArguments& values) const {
@@ -106,7 +117,7 @@ void Studio::drawAdjustPanel() {
 }
 
 void Studio::drawStrandPanel() {
-  if (!ImGui::CollapsingHeader("Strands")) return;
+  if (!header("Strands")) return;
   const StrandSettings& s = document_->editor.state().strands;
   CommandArguments values{{"count", double(s.count)}, {"points", double(s.points)},
                           {"tolerance", s.tolerance}, {"seed", double(s.seed)},
@@ -118,7 +129,7 @@ void Studio::drawStrandPanel() {
 }
 
 void Studio::drawHistoryPanel() {
-  if (!ImGui::CollapsingHeader("History")) return;
+  if (!header("History")) return;
   const std::vector<std::string> labels = document_->editor.stepLabels();
   const std::size_t done = document_->editor.undoCount();
   ImGui::BeginChild("steps", {0, 140 * window_.scale()});
@@ -135,7 +146,7 @@ void Studio::drawHistoryPanel() {
 }
 
 void Studio::drawStagePanel() {
-  if (!ImGui::CollapsingHeader("Stages")) return;
+  if (!header("Stages")) return;
   for (const StageReport& stage : stages_) {
     ImGui::Text("%s: %s, %.1f ms", stage.name.c_str(), name(stage.state), 1e3 * stage.seconds);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", stage.reason.c_str());
@@ -143,7 +154,7 @@ void Studio::drawStagePanel() {
 }
 
 void Studio::drawPythonPanel() {
-  if (!ImGui::CollapsingHeader("Python")) return;
+  if (!header("Python")) return;
   std::string log = document_->editor.pythonLog();
   if (ImGui::Button("Copy")) ImGui::SetClipboardText(log.c_str());
   ImGui::InputTextMultiline("##log", &log, {-1, 140 * window_.scale()}, ImGuiInputTextFlags_ReadOnly);

@@ -93,11 +93,23 @@ Status PictureWorker::openPreview() {
   return {};
 }
 
+void PictureWorker::forgetPreview() {
+  session_.reset();
+  preview_.reset();
+  shownHead_.reset();
+  headShown_ = hairShown_ = false;
+  shownTopology_ = 0;
+}
+
 PictureAnswer PictureWorker::answer(const PictureRequest& request) {
   const Stopwatch watch;
   PictureAnswer out;
   out.camera = request.camera;
-  if (const Status status = show(request, out); !status.ok()) out.problem = status.error().text();
+  if (const Status status = show(request, out); !status.ok()) {
+    out.problem = status.error().text();
+    // A driver that fails, or a context that is lost, is left for a new one: all that it showed is kept here.
+    if (status.error().code == ErrorCode::Unsupported) forgetPreview();
+  }
   out.seconds = watch.seconds();
   return out;
 }

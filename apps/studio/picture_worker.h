@@ -52,6 +52,7 @@ class PictureWorker {
   void loop();
   PictureAnswer answer(const PictureRequest& request);
   Status openPreview();
+  void forgetPreview();
   Status show(const PictureRequest& request, PictureAnswer& out);
   void adaptDrafts(double seconds);
   Status updateHair(const PictureRequest& request, const Context& context);

@@ -87,7 +87,13 @@ void Studio::takeScripts() {
     if (channel_->closed() && requests_.empty()) channel_.reset();
   }
   // In order, and each after what was begun before it is done.
+  restedFrames_ = fine_ && !pictures_->busy() ? restedFrames_ + 1 : 0;
   while (!job_.busy() && !requests_.empty()) {
+    const bool waits = requests_.front().message.contains("rest") && document_;
+    if (waits && restedFrames_ < 3) {  // the picture is taken in one frame and drawn in the next
+      window_.wakeWithin(0.05);
+      break;
+    }
     const Request request = std::move(requests_.front());
     requests_.erase(requests_.begin());
     answer(request);
@@ -113,6 +119,14 @@ void Studio::answer(const Request& request) {
     openPath(asText("open"), options_.style);
     return afterJob();
   }
+  if (m.contains("act")) {
+    const auto action = std::ranges::find(actions_, asText("act"), &Action::name);
+    if (action == actions_.end()) return reply("there is no action '" + asText("act") + "'");
+    const std::string why = action->refusal ? action->refusal() : "";
+    if (why.empty()) action->act();
+    return reply(why);
+  }
+  if (m.contains("rest")) return reply("");
   if (m.contains("close")) {
     if (document_) document_->forgetAutosave();
     quit_ = true;

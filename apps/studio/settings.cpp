@@ -59,6 +59,10 @@ Settings Settings::load() {
     out.lightTheme = json.value("lightTheme", false);
     out.mayaMouse = json.value("mayaMouse", false);
     out.console = json.value("console", false);
+    out.open = json.value("open", out.open);
+    out.width = std::clamp(json.value("width", out.width), 200, 16384);
+    out.height = std::clamp(json.value("height", out.height), 100, 16384);
+    out.tourSeen = json.value("tourSeen", false);
     out.consoleHeight = std::clamp(json.value("consoleHeight", out.consoleHeight), 60.0f, 2000.0f);
   } catch (const nlohmann::json::exception&) {
     return {};
@@ -75,6 +79,10 @@ Status Settings::save() const {
                             {"lightTheme", lightTheme},
                             {"mayaMouse", mayaMouse},
                             {"console", console},
+                            {"open", open},
+                            {"width", width},
+                            {"height", height},
+                            {"tourSeen", tourSeen},
                             {"consoleHeight", consoleHeight}}
                  .dump(2));
   return file.commit();

@@ -46,7 +46,7 @@ Studio::Studio(Window& window, StudioOptions options)
   actions_ = makeActions();
   window_.setTheme(settings_.lightTheme);
   view_.settings.habit = settings_.mayaMouse ? MouseHabit::Maya : MouseHabit::Blender;
-  tourOpen_ = settings_.recent.empty() && options_.open.empty();
+  tourOpen_ = !settings_.tourSeen && options_.open.empty();
   if (options_.channel >= 0) channel_ = std::make_unique<Channel>(options_.channel, &Window::wake);
   if (!options_.open.empty()) openPath(options_.open, options_.style);
   if (options_.open.empty() && leftBehind_.empty()) openExample();
@@ -54,6 +54,13 @@ Studio::Studio(Window& window, StudioOptions options)
 
 Studio::~Studio() {
   job_.abandon();  // it may look at the document
+}
+
+Status Studio::finish() {
+  const auto [width, height] = window_.size();
+  if (width >= 200 && height >= 100) settings_.width = width, settings_.height = height;
+  (void)settings_.save();  // a folder that cannot be written only forgets the window's size
+  return trace_.write();
 }
 
 void Studio::say(std::string message, bool problem) {
@@ -101,6 +108,7 @@ bool Studio::waitsForJob() {
 
 void Studio::ran(const std::string& command, const CommandArguments& arguments, std::size_t stepsBefore) {
   say(findCommand(command)->label);
+  followTour(command);
   if (command == "undo" || command == "redo" || document_->editor.undoCount() > stepsBefore) {
     if (!options_.pythonLog.empty()) {
       std::ofstream(options_.pythonLog, std::ios::app) << pythonLine(command, arguments) << "\n";
@@ -172,10 +180,12 @@ void Studio::saveTo(const std::filesystem::path& path) {
 void Studio::exportTo(const std::filesystem::path& path) {
   if (!document_ || waitsForJob()) return;
   auto scene = std::make_shared<const Scene>(document_->editor.scene());
+  StrandExport what;
+  what.mesh = exportMesh_;
   job_.start("Exporting " + path.filename().string(),
-             [this, scene, path](const Context& context) -> Job::Finish {
+             [this, scene, path, what](const Context& context) -> Job::Finish {
                Evaluation evaluation;
-               const auto report = evaluation.exportTo(*scene, path, {}, context);
+               const auto report = evaluation.exportTo(*scene, path, what, context);
                const std::string problem = report.ok() ? "" : report.error().text();
                return [this, path, problem] {
                  problem.empty() ? say("exported " + path.string()) : say(problem, true);
@@ -279,6 +289,7 @@ void Studio::takePictures() {
 }
 
 void Studio::takeKeys() {
+  if (!keyAskedFor_.empty()) return takeNewKey();
   if (ImGui::GetIO().WantTextInput || window_.keys().none()) return;
   if (turntable_ && window_.keys().pressed("Escape")) turntable_.reset(), say("the turntable was stopped");
   for (const MenuEntry& entry : entries()) {
@@ -327,6 +338,8 @@ bool Studio::frame() {
   drawRecoveryDialog();
   drawCloseDialog();
   drawTour();
+  drawKeyMap();
+  drawExportDialog();
   autosave();
   window_.setTitle((document_ ? document_->title() + " – " : std::string()) + "Coif Studio");
   return !quit_;

@@ -44,7 +44,8 @@ class Studio {
   bool frame();
   /// Asks to save first where something changed; true when the window may close now.
   bool mayClose();
-  Status finish() const { return trace_.write(); }
+  /// Writes what is to be kept. Call once, at the end.
+  Status finish();
   /// Every command and action with menu and key, as JSON.
   std::string commandList() const;
 
@@ -133,6 +134,7 @@ class Studio {
   void drawStagePanel();
   void drawPythonPanel();
   void drawStatusLine();
+  bool header(const char* label);  ///< of a panel; open or not as in the last run
   void drawProgress();
 
   // Python (scripting.cpp, console_panel.cpp).
@@ -159,7 +161,12 @@ class Studio {
   void drawPathDialog();
   void drawRecoveryDialog();
   void drawCloseDialog();
-  void drawTour();
+  void drawTour();  // tour.cpp
+  void followTour(const std::string& command);
+  void drawKeyMap();  // key_map.cpp
+  void takeNewKey();
+  void drawExportDialog();  // export_dialog.cpp
+  void drawGroupPanel();    // group_panel.cpp
   bool drawArgument(const CommandArgument& argument, CommandArguments& values) const;
 
   enum class PathUse { None, Open, SaveAs, Export, Screenshot, Turntable, BakeMotion, RunScript, TakeMesh };
@@ -186,6 +193,7 @@ class Studio {
   int typedAt_ = -1;
   std::unique_ptr<Channel> channel_;  // to the process that opened the studio
   std::vector<Request> requests_;
+  int restedFrames_ = 0;
   SelectTool select_;
   BrushTool brush_;
   ToolSettings tools_;
@@ -217,7 +225,11 @@ class Studio {
   PathUse pathUse_ = PathUse::None;
   std::string pathText_;
   bool paletteOpen_ = false, closeAsked_ = false, quit_ = false, tourOpen_ = false;
-  std::string paletteText_;
+  std::string paletteText_, keyMapText_, keyAskedFor_, groupText_;
+  bool keyMapOpen_ = false, exportOpen_ = false;
+  int exportFormat_ = 0, tourStep_ = 0;
+  StrandMesh exportMesh_ = StrandMesh::Cards;
+  Vec3 tourEye_ = Vec3::Zero();
   bool idsAsked_ = false;
   std::string idsText_;
   std::vector<std::filesystem::path> leftBehind_;

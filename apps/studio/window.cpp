@@ -135,6 +135,12 @@ void Window::setTitle(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
 }
 
+std::pair<int, int> Window::size() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  return {width, height};
+}
+
 Image Window::screenshot() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);

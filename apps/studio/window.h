@@ -38,6 +38,7 @@ class Window {
   Image screenshot() const;
   /// Paths dropped on the window since the last call.
   std::vector<std::string> takeDropped();
+  std::pair<int, int> size() const;  ///< as the window system counts
   float scale() const { return scale_; }
   void setTheme(bool light);  ///< from the next frame on
   std::uint64_t framesDrawn() const { return frames_; }

@@ -141,6 +141,14 @@ class StudioEditor:
         """The steps that are done as lines of Python."""
         return self._state("python_log")
 
+    def act(self, name):
+        """Does what a menu entry of the window does: "view_front", "show_head", "play", "console"."""
+        self._link.ask(act=name)
+
+    def rest(self):
+        """Waits until the window shows the document as it is now, finely drawn."""
+        self._link.ask(rest=True)
+
     def open(self, path):
         """Opens a head or a .coif document in the editor."""
         self._link.ask(open=os.path.abspath(path))

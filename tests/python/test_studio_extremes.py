@@ -1,0 +1,163 @@
+"""coif-studio where something is missing, full, gone, empty or tiny: a sentence, and the work goes on."""
+
+import os
+import resource
+import shutil
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from studio_window import BIN, PATIENCE, Studio, needs_window
+
+coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
+pytestmark = needs_window
+
+
+@pytest.fixture
+def opened(display, bob, tmp_path):
+    """Opens bob.coif, or what is named, as it lies in a folder of its own; more environment by keyword."""
+    made = []
+    for name in ("bob.coif", "head.obj"):
+        shutil.copy(bob.parent / name, tmp_path / name)
+
+    def open_(*arguments, prepare=lambda folder: None, title="bob.coif", **environment):
+        prepare(tmp_path)
+        for name, value in environment.items():
+            os.environ[name] = value
+        try:
+            studio = Studio(display, tmp_path, *(arguments or ("bob.coif",)))
+        finally:
+            for name in environment:
+                del os.environ[name]
+        made.append(studio)
+        return studio.opened(title)
+
+    yield open_
+    for studio in made:
+        studio.end()
+
+
+def alive(studio):
+    time.sleep(0.5)
+    assert studio.process.poll() is None
+    return studio
+
+
+def test_a_window_without_opengl_is_a_sentence(display):
+    environment = dict(os.environ, DISPLAY=display, MESA_GL_VERSION_OVERRIDE="3.0", MESA_GLSL_VERSION_OVERRIDE="130")
+    done = subprocess.run([BIN / "coif-studio"], env=environment, capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == 1 and "OpenGL" in done.stderr and "3.3" in done.stderr, done.stderr
+
+
+def test_without_the_strands_opengl_the_mesh_is_edited_all_the_same(opened):
+    studio = opened(MESA_GL_VERSION_OVERRIDE="3.3")
+    studio.did("select_all", "a")
+    studio.did("smooth", "shift+r")
+    alive(studio)
+
+
+def test_a_head_that_vanished_leaves_the_hair(opened):
+    studio = opened(prepare=lambda folder: (folder / "head.obj").unlink())
+    studio.did("select_all", "a")
+    studio.did("smooth", "shift+r")
+    studio.saved()
+
+
+def test_a_file_that_vanished_is_written_again(opened):
+    studio = opened()
+    studio.did("select_all", "a")
+    studio.did("smooth", "shift+r")
+    (studio.folder / "bob.coif").unlink()
+    studio.saved()
+
+
+def test_a_full_disk_leaves_the_old_file(opened):
+    studio = opened()
+    before = (studio.folder / "bob.coif").read_bytes()
+    studio.did("select_all", "a")
+    studio.did("smooth", "shift+r")
+    resource.prlimit(studio.process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+    studio.key("ctrl+s")
+    alive(studio)
+    assert (studio.folder / "bob.coif").read_bytes() == before and studio.title().startswith("*")
+    resource.prlimit(studio.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    studio.saved()
+    assert (studio.folder / "bob.coif").read_bytes() != before
+
+
+def test_a_state_folder_that_cannot_be_made_is_done_without(display, bob, tmp_path):
+    for name in ("bob.coif", "head.obj"):
+        shutil.copy(bob.parent / name, tmp_path / name)
+    (tmp_path / "state").write_text("a file where the folder should be")
+    studio = Studio(display, tmp_path, "bob.coif").opened("bob.coif")
+    try:
+        studio.did("select_all", "a")
+        time.sleep(3)  # the first autosave is tried, and fails
+        studio.did("smooth", "shift+r")
+        studio.saved()
+    finally:
+        studio.end()
+
+
+def test_an_empty_scene_is_no_crash(opened):
+    studio = opened("empty.coif", title="empty.coif",
+                    prepare=lambda folder: coif.Scene(name="empty").save(folder / "empty.coif"))
+    for key in ("a", "3", "e", "Escape", "g", "Escape", "space", "shift+d", "Home", "shift+l", "ctrl+m", "ctrl+k"):
+        studio.key(key)
+    alive(studio)
+
+
+def test_a_window_made_tiny_hidden_and_large_again(opened):
+    studio = opened()
+    for size in ((200, 100), (900, 600)):
+        studio.tool("windowsize", studio.window, *size)
+        time.sleep(0.4)
+    studio.tool("windowunmap", studio.window)
+    time.sleep(0.4)
+    studio.tool("windowmap", studio.window)
+    time.sleep(0.4)
+    studio.point(*studio.middle())
+    studio.did("select_all", "a")
+
+
+def test_rubbish_is_refused_and_the_document_stays(opened):
+    def rubbish(folder):
+        (folder / "state/coif").mkdir(parents=True)
+        (folder / "state/coif/studio.json").write_text('{"recent": 3, "keys": [[[')
+        (folder / "state/coif/autosave").mkdir()
+
+    studio = opened(prepare=rubbish)
+    broken = studio.folder / "broken.coif"
+    broken.write_bytes(os.urandom(2000))
+    studio.key("ctrl+o", "ctrl+a")
+    studio.type(str(broken))
+    studio.key("Return")
+    alive(studio)
+    assert "bob.coif" in studio.title()
+    studio.did("select_all", "a")
+
+
+@pytest.mark.slow
+def test_a_head_of_two_million_polygons_does_not_freeze_the_window(display, tmp_path):
+    rows, columns = 1000, 2000
+    theta = np.linspace(0.01, np.pi - 0.01, rows + 1)[:, None]
+    phi = np.linspace(0, 2 * np.pi, columns, endpoint=False)[None, :]
+    points = 12 * np.stack([np.sin(theta) * np.sin(phi), np.cos(theta) + 0 * phi, np.sin(theta) * np.cos(phi)], -1)
+    index = np.arange((rows + 1) * columns).reshape(rows + 1, columns) + 1
+    right = np.roll(index, -1, axis=1)
+    faces = np.stack([index[:-1], index[1:], right[1:], right[:-1]], -1).reshape(-1, 4)
+    with open(tmp_path / "big.obj", "w") as file:
+        np.savetxt(file, points.reshape(-1, 3), "v %.5f %.5f %.5f")
+        np.savetxt(file, faces, "f %d %d %d %d")
+    studio = Studio(display, tmp_path, "big.obj", "--style", "")
+    try:
+        studio.key("F3")  # the palette opens while the file is read
+        studio.type("python console")
+        studio.key("Return")
+        time.sleep(0.5)
+        assert studio.process.poll() is None
+        settings = tmp_path / "state/coif/studio.json"
+        studio.wait(lambda: settings.exists() and '"console": true' in settings.read_text(), "the console to be opened")
+    finally:
+        studio.end()
