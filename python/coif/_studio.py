@@ -228,7 +228,7 @@ def studio(scene, *, wait=True, arguments=()):
         [program, os.fspath(path), "--channel", str(theirs.fileno()), *arguments],
         pass_fds=[theirs.fileno()], stderr=subprocess.PIPE, text=True)
     theirs.close()
-    opened = Studio(process, _Link(ours), path, head)
+    opened = Studio(process, _Link(ours), path, absolute)
     opened._folder = keep  # lives as long as the editor may save into it
     try:
         opened._link.ask(state="title")  # answered once the document is open
