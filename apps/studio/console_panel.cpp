@@ -49,9 +49,7 @@ float Studio::drawConsole(const ImVec2& at, const ImVec2& size) {
   ImGui::PushTextWrapPos(0);
   const std::string& text = console_.text();
   if (text.empty()) {
-    ImGui::TextDisabled(
-        "Python. `editor` is the open document: editor.select_all(); editor.smooth(steps=3). Tab names, F4 "
-        "closes.");
+    ImGui::TextDisabled("Python. `editor` is the open document: editor.select_all(); editor.smooth(steps=3)");
   }
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
   ImGui::PopTextWrapPos();
@@ -63,9 +61,10 @@ float Studio::drawConsole(const ImVec2& at, const ImVec2& size) {
   const float buttons = 190 * scale;
   ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - buttons, 40.0f));
   Recall recall{typedBefore_, typedAt_};
-  if (ImGui::InputText("##line", &typed_,
-                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory,
-                       Recall::turn, &recall)) {
+  ImGui::InputText("##line", &typed_, ImGuiInputTextFlags_CallbackHistory, Recall::turn, &recall);
+  // By the window's own events: in a slow frame Enter may go down and up again.
+  const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
+  if (typing && window_.keys().pressed("Enter")) {
     if (!typed_.empty()) typedBefore_.push_back(typed_);
     typedAt_ = -1;
     console_.execute(std::exchange(typed_, {}));

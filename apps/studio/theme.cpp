@@ -9,7 +9,7 @@
 namespace coif::studio {
 namespace {
 
-constexpr float kFontPx = 15;
+constexpr float kFontPx = 13;
 
 const char* fontFile() {
   static constexpr const char* kKnown[] = {
@@ -80,7 +80,7 @@ void applyTheme(bool light, float scale) {
   applyColors(style, light);
   style.WindowRounding = 0, style.ChildRounding = 3, style.FrameRounding = 3, style.PopupRounding = 4;
   style.GrabRounding = 3, style.ScrollbarRounding = 6, style.TabRounding = 3;
-  style.WindowPadding = {10, 8}, style.FramePadding = {7, 4}, style.ItemSpacing = {7, 5};
+  style.WindowPadding = {10, 8}, style.FramePadding = {5, 3}, style.ItemSpacing = {7, 5};
   style.ScrollbarSize = 12, style.GrabMinSize = 9, style.IndentSpacing = 16;
   style.WindowBorderSize = 1, style.FrameBorderSize = light ? 1.0f : 0.0f;
   style.ScaleAllSizes(scale);
