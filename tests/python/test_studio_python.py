@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -89,15 +90,23 @@ def test_refusals_and_faults_of_a_script_are_its_own(scripted):
     assert studio.process.poll() is None and studio.lines() == []
 
 
+def enter(studio, *lines):
+    for line in lines:
+        if line:
+            studio.type(line)
+        studio.key("Return")
+
+
 def test_the_console_runs_what_is_typed(studio):
     studio.key("F4")
     studio.click(400, 555)
-    studio.type("editor.select_all()\n")
+    enter(studio, "editor.select_all()")
     studio.wait(lambda: any("select_all" in line for line in studio.lines()), "the console's command")
-    studio.type("for i in range(2): editor.translate(by=(0, 0.25, 0))\n\n")
+    enter(studio, "for i in range(2): editor.translate(by=(0, 0.25, 0))", "")
     studio.wait(lambda: sum("translate" in line for line in studio.lines()) == 2, "a loop of two moves")
-    studio.type("import os; os._exit(3)\n")  # Python dies: the studio does not
-    studio.type("editor.select_none()\n")
+    enter(studio, "import os; os._exit(3)")  # Python dies: the studio does not
+    time.sleep(1)
+    enter(studio, "editor.select_none()")
     studio.wait(lambda: any("select_none" in line for line in studio.lines()), "a new Python")
 
 

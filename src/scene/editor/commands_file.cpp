@@ -21,7 +21,7 @@ std::vector<Command> fileCommands() {
       {{"use_mesh",
         "Take a mesh ...",
         "File",
-        "",
+        "Ctrl+Shift+O",
         "Replaces the hair mesh by that of another document on the same head.",
         {text("file", "", "A .coif document.")}},
        useMesh},
