@@ -9,10 +9,12 @@
 namespace coif::studio {
 namespace {
 
+constexpr int kTyping = -1, kNextLine = -2;  // no line of before; the next one takes the keyboard
+
 /// Up and down bring back what was typed before.
 struct Recall {
   const std::vector<std::string>& lines;
-  int& at;  // -1: the line being typed
+  int& at;  // below 0: the line being typed
 
   static int turn(ImGuiInputTextCallbackData* data) {
     auto& self = *static_cast<Recall*>(data->UserData);
@@ -61,14 +63,20 @@ float Studio::drawConsole(const ImVec2& at, const ImVec2& size) {
   const float buttons = 190 * scale;
   ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - buttons, 40.0f));
   Recall recall{typedBefore_, typedAt_};
+  // A field of its own for each line: one that is being typed in holds on to its text.
+  ImGui::PushID(int(typedBefore_.size()));
+  if (typedAt_ == kNextLine) {
+    ImGui::SetKeyboardFocusHere();
+    typedAt_ = kTyping;
+  }
   ImGui::InputText("##line", &typed_, ImGuiInputTextFlags_CallbackHistory, Recall::turn, &recall);
+  ImGui::PopID();
   // By the window's own events: in a slow frame Enter may go down and up again.
   const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   if (typing && window_.keys().pressed("Enter")) {
-    if (!typed_.empty()) typedBefore_.push_back(typed_);
-    typedAt_ = -1;
+    typedBefore_.push_back(typed_);
+    typedAt_ = kNextLine;
     console_.execute(std::exchange(typed_, {}));
-    ImGui::SetKeyboardFocusHere(-1);
   }
   ImGui::SameLine();
   if (ImGui::Button("Run ...")) askPath(PathUse::RunScript);

@@ -44,7 +44,7 @@ std::vector<Action> Studio::motionActions() {
       {"bake",
        "Bake ...",
        "Motion",
-       "Ctrl+B",
+       "Ctrl+Shift+B",
        "Writes every frame: USD with time samples, or a .coifcache.",
        [this] { askPath(PathUse::BakeMotion); },
        {},

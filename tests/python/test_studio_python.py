@@ -106,6 +106,7 @@ def test_the_console_runs_what_is_typed(studio):
     studio.wait(lambda: sum("translate" in line for line in studio.lines()) == 2, "a loop of two moves")
     enter(studio, "import os; os._exit(3)")  # Python dies: the studio does not
     time.sleep(1)
+    studio.click(400, 555)
     enter(studio, "editor.select_none()")
     studio.wait(lambda: any("select_none" in line for line in studio.lines()), "a new Python")
 

@@ -313,7 +313,8 @@ TEST(Commands, HaveUniqueNamesKeysAndHelp) {
 
 TEST(Commands, WithoutAKeyHaveAnotherWayIn) {
   // Lists that the mouse fills in, and settings that a panel shows.
-  const std::set<std::string> keyless{"select", "displace", "brush", "set_strands", "set_look", "set_light"};
+  const std::set<std::string> keyless{"select", "displace", "brush", "set_strands", "set_look", "set_light",
+                                      "set_dynamics"};
   for (const CommandInfo& info : commandInfos()) {
     EXPECT_EQ(info.key.empty(), keyless.contains(info.name)) << info.name;
   }
