@@ -280,6 +280,7 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
 }
 
 Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const Context& context) {
+  constexpr int kEnoughOfLayers = 2;
   const Stopwatch watch;
   COIF_TRY(checkOptions(asked));
   PreviewOptions options = asked;
@@ -301,6 +302,12 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);  // with what the maps filled in
   COIF_TRY(makeEye(options, view, picture));
   COIF_TRY(makeSlices(options, view, frame, picture));
+  if (hair && options.leaveOut && options.transparency == PreviewTransparency::Auto &&
+      eye->method() == PreviewTransparency::DepthLayers && options.subframes > kEnoughOfLayers) {
+    options.subframes = kEnoughOfLayers;
+    frame.headColor.w() = makeFrame(view, lights, options).headColor.w();
+    report(picture, "more sub-frames", StageState::Skipped, "depth layers have no noise: two do");
+  }
   shade(options, picture);
   COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
   COIF_TRY(device->programs->error());
