@@ -96,14 +96,16 @@ class PreviewRenderer {
     made.grown_ = subject.strands && scene.strands.tolerance <= 0;
     made.hairMesh_ = arguments.hairMesh;
     if (arguments.hairMesh) made.session_.setOverlay(*subject.mesh);
-    made.session_.setLights(arguments.lights());
+    made.session_.setLights(arguments.lights(scene));
     made.options_ = arguments.previewOptions(scene);
     return made;
   }
 
-  /// The hair mesh on a frame, in the head's frame, and the ground as it lies there; strands follow on the
-  /// GPU.
-  Status move(const HairMesh& mesh, const std::optional<Ground>& ground, const Context& context) {
+  /// The hair mesh on a frame, in the head's frame, ground and lights as they are there; strands follow on
+  /// the GPU.
+  Status move(const HairMesh& mesh, const std::optional<Ground>& ground, const Lights& lights,
+              const Context& context) {
+    session_.setLights(lights);
     COIF_TRY(session_.setGround(ground));
     std::vector<Vec3> positions;
     for (const HairVertex& vertex : mesh.vertices()) positions.push_back(vertex.position);
@@ -146,7 +148,7 @@ Result<Json> tracePicture(const Subject& subject, const Scene& scene, const Rend
   traced.head = subject.head;
   traced.ground = subject.ground;
   traced.camera = camera;
-  traced.lights = arguments.lights();
+  traced.lights = arguments.lights(scene);
   traced.fibre = arguments.fibre(scene);
   PathTraceOptions options;
   options.width = arguments.width(), options.height = arguments.height();
@@ -208,7 +210,7 @@ Status render(const Arguments& all, Session& session) {
       COIF_ASSIGN(const HairMesh moved, evaluation.meshAt(scene, motion, f, context));
       std::optional<Ground> ground;
       if (subject.ground) ground = groundFromHead(*subject.ground, pose);
-      COIF_TRY(preview->move(moved, ground, context));
+      COIF_TRY(preview->move(moved, ground, lightsFromHead(arguments.lights(scene), pose), context));
       return picture(subject, cameraFromHead(cameraAt(0), pose), path);
     }
     Subject seen = subject;

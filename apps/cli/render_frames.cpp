@@ -81,6 +81,14 @@ Camera cameraFromHead(const Camera& camera, const RigidPose& pose) {
   return seen;
 }
 
+Lights lightsFromHead(const Lights& lights, const RigidPose& pose) {
+  Lights seen = lights;
+  if (lights.followCamera) return seen;
+  for (Light* light : {&seen.key, &seen.fill, &seen.rim})
+    light->direction = pose.rotation.transpose() * light->direction;
+  return seen;
+}
+
 Ground groundFromHead(const Ground& ground, const RigidPose& pose) {
   Ground seen = ground;
   seen.point = pose.local(ground.point);

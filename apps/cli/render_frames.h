@@ -5,6 +5,7 @@
 
 #include "coif/light/camera.h"
 #include "coif/light/ground.h"
+#include "coif/light/lights.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 
@@ -27,6 +28,8 @@ struct FrameArguments {
 
 /// The camera as the head sees it: what moves with the head stands still there.
 Camera cameraFromHead(const Camera& camera, const RigidPose& pose);
+/// Lights that stand in the scene.
+Lights lightsFromHead(const Lights& lights, const RigidPose& pose);
 /// And the ground.
 Ground groundFromHead(const Ground& ground, const RigidPose& pose);
 /// The head where it is.

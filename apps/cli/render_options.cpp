@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <numbers>
 #include <utility>
 
 #include "coif/light/hair_color.h"
@@ -144,23 +143,19 @@ PreviewOptions RenderArguments::previewOptions(const Scene& document) const {
   return options;
 }
 
-Lights RenderArguments::lights() const {
-  Lights lights;
-  if (light == "none") {
-    lights.key.color = lights.fill.color = lights.rim.color = Vec3f::Zero();
-  } else if (!light.empty()) {
-    constexpr double kRadians = std::numbers::pi / 180;
-    double azimuth = 0, elevation = 0;
-    parseAngles(light, azimuth, elevation);
-    lights.key.direction =
-        Vec3(std::sin(azimuth * kRadians) * std::cos(elevation * kRadians), std::sin(elevation * kRadians),
-             std::cos(azimuth * kRadians) * std::cos(elevation * kRadians));
+Lights RenderArguments::lights(const Scene& document) const {
+  LightSettings settings = document.look.light;
+  if (light != "none" && !light.empty()) {
+    parseAngles(light, settings.azimuthDeg, settings.elevationDeg);
+    settings.followCamera = true;
   }
+  Lights lights = lightsOf(settings, document.upAxis);
+  if (light == "none") lights.key.color = lights.fill.color = lights.rim.color = Vec3f::Zero();
   return lights;
 }
 
 FibreParameters RenderArguments::fibre(const Scene& document) const {
-  FibreParameters fibre;
+  FibreParameters fibre = fibreOf(document.look);
   for (HairColor preset : kColors) {
     if (hair == nameOf(preset)) {
       fibre.absorption = absorptionOf(preset);

@@ -31,8 +31,8 @@ struct RenderArguments {
   bool pathTraced() const { return shading == "path-traced"; }
   /// Of a preview: what the words ask for.
   PreviewOptions previewOptions(const Scene& document) const;
-  /// Lights with the key turned to --light, or without any light for "none".
-  Lights lights() const;
+  /// The document's lights, with the key turned to --light or without any for "none".
+  Lights lights(const Scene& document) const;
   Vec3f hairColor(const Scene& document) const;
   /// The fibre of that colour: by preset or by albedo.
   FibreParameters fibre(const Scene& document) const;
