@@ -89,6 +89,7 @@ HeadProblem::HeadProblem(const Options& options)
   probe.prepare({chains_.restPositions, still, chains_.masses, chains_.radii}, 0, 1, {});
   repulsion.restDensity = options.density * probe.maxDensity();
   repulsion.stiffness = options.stiffness / probe.maxDensity();
+  repulsion.friction = 0;  // 1 only made the probe look
   repulsion_ = std::make_unique<RepulsionField>(repulsion);
   fields_.push_back(repulsion_.get());
 
