@@ -63,7 +63,7 @@ def test_everything_has_a_repr(tuft):
 
 def test_stubs_name_everything_public_and_parse():
     tree = ast.parse((PACKAGE / "_coif.pyi").read_text())
-    defined = set()
+    defined = {"studio"}  # of _studio.py, which is Python itself
     for node in tree.body:
         if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
             defined.add(node.name)
