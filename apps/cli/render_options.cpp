@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <utility>
 
+#include "coif/base/check.h"
 #include "coif/light/hair_color.h"
-#include "coif/preview/preview.h"
+#include "coif/preview/names.h"
 
 namespace coif::cli {
 namespace {
@@ -14,46 +16,8 @@ namespace {
 constexpr HairColor kColors[] = {HairColor::Black, HairColor::Brown, HairColor::Red,
                                  HairColor::Blond, HairColor::Grey,  HairColor::Dyed};
 
-constexpr std::pair<const char*, VisibilityMethod> kVisibility[] = {
-    {"none", VisibilityMethod::None},
-    {"opacity", VisibilityMethod::Opacity},
-    {"density-clustering", VisibilityMethod::DensityClustering},
-    {"light-map", VisibilityMethod::LightMap},
-    {"deep-opacity", VisibilityMethod::DeepOpacity},
-    {"occupancy", VisibilityMethod::Occupancy},
-    {"exact", VisibilityMethod::Exact}};
-
-constexpr std::pair<const char*, PreviewShading> kShadings[] = {
-    {"studio", PreviewShading::Studio},
-    {"kajiya-kay", PreviewShading::KajiyaKay},
-    {"marschner", PreviewShading::Marschner},
-    {"energy-conserving", PreviewShading::Marschner},
-    {"dual-scattering", PreviewShading::DualScattering}};
-
-constexpr std::pair<const char*, PreviewTransparency> kTransparencies[] = {
-    {"auto", PreviewTransparency::Auto},
-    {"opaque", PreviewTransparency::Opaque},
-    {"stochastic", PreviewTransparency::Stochastic},
-    {"alpha-to-coverage", PreviewTransparency::AlphaToCoverage},
-    {"weighted-average", PreviewTransparency::WeightedAverage},
-    {"occupancy-ordered", PreviewTransparency::OccupancyOrdered},
-    {"depth-layers", PreviewTransparency::DepthLayers},
-    {"half-angle-slices", PreviewTransparency::HalfAngleSlices},
-    {"exact-lists", PreviewTransparency::ExactLists}};
-
-/// What a word of the table means; the first entry's meaning for a word that is not in it.
-template <class Table>
-auto meaning(const Table& table, const std::string& word) {
-  for (const auto& [name, value] : table) {
-    if (word == name) return value;
-  }
-  return table[0].second;
-}
-
-template <class Table>
-CLI::IsMember oneOf(const Table& table, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> words;
-  for (const auto& [name, value] : table) words.push_back(name);
+CLI::IsMember oneOf(std::span<const char* const> names, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words(names.begin(), names.end());
   words.insert(words.end(), more.begin(), more.end());
   return CLI::IsMember(words);
 }
@@ -129,13 +93,13 @@ PreviewOptions RenderArguments::previewOptions(const Scene& document) const {
   PreviewOptions options;
   options.width = width(), options.height = height();
   options.hairColor = hairColor(document);
-  options.shading = meaning(kShadings, shading);
   options.fibre = fibre(document);
-  if (shading == "marschner") options.fibre.model = FibreModel::Marschner;
+  // The words were checked as they were read.
+  if (!pathTraced()) COIF_CHECK(setShading(options, shading).ok(), "a shading");
+  COIF_CHECK(setTransparency(options, transparency).ok(), "a transparency");
+  COIF_CHECK(setVisibility(options, visibility).ok(), "a visibility method");
   options.useAbsorption = true;
-  options.transparency = meaning(kTransparencies, transparency);
   options.shadows = !noShadows;
-  options.visibility.method = meaning(kVisibility, visibility);
   options.visibility.layers = layers == "auto" ? 0 : std::stoi(layers);
   options.lod = lod != "off";
   options.strandFraction = strandFraction();
@@ -202,9 +166,9 @@ CLI::Option* RenderArguments::addTo(CLI::App& command) {
       .add_option("--light", light, "Where the key light stands, as seen from the camera; none: only the sky")
       ->check(CLI::Validator(checkLight, "AZ,EL|none"));
   command.add_option("--visibility", visibility, "How hair shadows itself from the key light")
-      ->check(oneOf(kVisibility));
+      ->check(oneOf(visibilityNames()));
   command.add_option("--transparency", transparency, "How hairs thinner than a pixel cover it")
-      ->check(oneOf(kTransparencies));
+      ->check(oneOf(transparencyNames()));
   command
       .add_option("--layers", layers, "Layers of deep opacity maps; auto: the fewest whose error is bounded")
       ->check(CLI::IsMember({"auto", "3", "7", "11", "15"}));
@@ -213,7 +177,7 @@ CLI::Option* RenderArguments::addTo(CLI::App& command) {
           "--shading", shading,
           "How hairs scatter light: in a moment by OpenGL, or path-traced: every bounce, slowly, with "
           "a stated error")
-      ->check(oneOf(kShadings, {"path-traced"}));
+      ->check(oneOf(shadingNames(), {"path-traced"}));
   command.add_option("--spp", samplesPerPixel, "Samples a pixel of a path-traced picture")
       ->check(CLI::Range(2, 1 << 20));
   command.add_option("--target-error", targetError, "Path traced: stop at this relative error of a pixel")

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind_light.h"
+#include "coif/preview/names.h"
 #include "coif/preview/session.h"
 
 namespace coif::python {
@@ -15,11 +16,25 @@ using namespace nb::literals;
 
 namespace {
 
+/// How a picture is made, by the words of `coif render`.
+struct Method {
+  std::string shading, visibility, transparency;
+  int layers = 7;
+
+  void apply(PreviewOptions& options) const {
+    take(setShading(options, shading));
+    take(setVisibility(options, visibility));
+    take(setTransparency(options, transparency));
+    options.visibility.layers = layers;
+  }
+};
+
 struct View {
   const Strands* strands = nullptr;
   const std::optional<Head>* head = nullptr;
   const HairMeshModel* hairMesh = nullptr;
   std::optional<Camera> camera;
+  bool ground = false;
   double azimuth = 30, elevation = 8;
 };
 
@@ -35,6 +50,7 @@ ByteRgba renderWith(Preview& preview, const View& view, const PreviewOptions& op
   const UpAxis up = scene.strands ? scene.strands->upAxis
                     : scene.head  ? scene.head->upAxis
                                   : view.hairMesh->upAxis;
+  if (view.ground && scene.head) scene.ground = groundUnder(*scene.head, up);
   scene.camera = view.camera
                      ? *view.camera
                      : frameBox(contentBox(scene.strands, scene.head, scene.hairMesh), up, view.azimuth,
@@ -47,7 +63,8 @@ ByteRgba renderWith(Preview& preview, const View& view, const PreviewOptions& op
 ByteRgba render(const Strands* strands, const std::optional<Head>& head, const HairMeshModel* hairMesh,
                 std::tuple<int, int> size, double azimuth, double elevation, std::optional<Camera> camera,
                 const ArrayLike& hairColor, std::optional<ArrayLike> background, bool transparent,
-                bool shadows, bool lod, int subframes, Preview* preview) {
+                bool shadows, bool lod, int subframes, std::string shading, std::string visibility,
+                int layers, std::string transparency, bool ground, Preview* preview) {
   PreviewOptions options;
   std::tie(options.width, options.height) = size;
   options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
@@ -58,7 +75,8 @@ ByteRgba render(const Strands* strands, const std::optional<Head>& head, const H
   options.shadows = shadows;
   options.lod = lod;
   options.subframes = subframes;
-  const View view{strands, &head, hairMesh, camera, azimuth, elevation};
+  Method{shading, visibility, transparency, layers}.apply(options);
+  const View view{strands, &head, hairMesh, camera, ground, azimuth, elevation};
   if (preview) return renderWith(*preview, view, options);
   Preview own = take(Preview::create());
   return renderWith(own, view, options);
@@ -82,7 +100,8 @@ struct Session {
 };
 
 ByteRgba renderSession(Session& self, std::tuple<int, int> size, const ArrayLike& hairColor, bool transparent,
-                       bool shadows, bool lod, double strandFraction, int subframes) {
+                       bool shadows, bool lod, double strandFraction, int subframes, std::string shading,
+                       std::string visibility, int layers, std::string transparency) {
   PreviewOptions options;
   std::tie(options.width, options.height) = size;
   options.hairColor = toVec3(hairColor, "hair_color").cast<float>();
@@ -91,6 +110,7 @@ ByteRgba renderSession(Session& self, std::tuple<int, int> size, const ArrayLike
   options.lod = lod;
   options.strandFraction = strandFraction;
   options.subframes = subframes;
+  Method{shading, visibility, transparency, layers}.apply(options);
   Picture picture =
       Run(0, nb::none())([&](const Context& context) { return self.session.render(options, context); });
   self.uploaded = picture.uploaded;
@@ -142,10 +162,12 @@ void bindSession(nb::module_& m) {
            "hair_color"_a =
                nb::make_tuple(defaults.hairColor.x(), defaults.hairColor.y(), defaults.hairColor.z()),
            "transparent"_a = false, "shadows"_a = true, "lod"_a = true, "strand_fraction"_a = 0.0,
-           "subframes"_a = defaults.subframes,
+           "subframes"_a = defaults.subframes, "shading"_a = "studio", "visibility"_a = "deep-opacity",
+           "layers"_a = defaults.visibility.layers, "transparency"_a = "auto",
            "The picture: height×width×4 uint8, sRGB with straight alpha, rows from the top. strand_fraction: "
            "part of "
-           "the strands to draw, 0: by their width on the screen.")
+           "the strands to draw, 0: by their width on the screen. shading, visibility, layers, transparency: "
+           "as in coif.render.")
       .def_prop_ro(
           "uploaded", [](const Session& self) { return uploadedOf(self.uploaded); },
           "Bytes that the last picture sent to the GPU, by kind.")
@@ -179,7 +201,9 @@ void bindPreview(nb::module_& m) {
       "azimuth"_a = 30.0, "elevation"_a = 8.0, "camera"_a.none() = nb::none(),
       "hair_color"_a = nb::make_tuple(defaults.hairColor.x(), defaults.hairColor.y(), defaults.hairColor.z()),
       "background"_a.none() = nb::none(), "transparent"_a = false, "shadows"_a = true, "lod"_a = true,
-      "subframes"_a = defaults.subframes, "preview"_a.none() = nb::none(),
+      "subframes"_a = defaults.subframes, "shading"_a = "studio", "visibility"_a = "deep-opacity",
+      "layers"_a = defaults.visibility.layers, "transparency"_a = "auto", "ground"_a = false,
+      "preview"_a.none() = nb::none(),
       "A picture of strands, a head (Scalp or PolygonMesh) and a hair mesh (drawn over it): height×width×4 "
       "uint8.\n\n"
       "sRGB with straight alpha, rows from the top; `size` is (width, height). Without a camera everything "
@@ -189,6 +213,15 @@ void bindPreview(nb::module_& m) {
       "strands have none; background: one linear RGB instead of the gradient. lod: fewer, wider strands "
       "where no one could tell. subframes: 1 to 64, four "
       "samples each.\n"
+      "shading: studio, kajiya-kay, marschner, energy-conserving or dual-scattering. visibility, how hair "
+      "shadows itself from\n"
+      "the key light: none, opacity, density-clustering, light-map, deep-opacity (of `layers`, 0: the fewest "
+      "whose bound is\n"
+      "met), occupancy or exact. transparency: auto, opaque, stochastic, alpha-to-coverage, "
+      "weighted-average,\n"
+      "occupancy-ordered, depth-layers, half-angle-slices or exact-lists. ground: a disc under the head. "
+      "Raises ValueError\n"
+      "for another word.\n"
       "preview: a Preview to use again. Needs no window and no GPU. Raises Error where OpenGL 4.5 is "
       "missing.");
 }

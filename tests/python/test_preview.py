@@ -84,3 +84,27 @@ def test_bad_arguments_are_refused(preview, tuft, tmp_path):
         coif.save_png(tmp_path / "x.png", np.zeros((4, 4, 3), np.uint8))
     with pytest.raises(ValueError):
         coif.save_png(tmp_path / "x.png", np.full((4, 4, 4), 256))
+
+
+def test_the_ways_of_the_command_are_those_of_the_module(preview, tuft):
+    strands = coif.grow(tuft, count=400, points=8)
+    common = dict(size=(48, 48), hair_color=(0.5, 0.3, 0.1), transparent=True, subframes=2, preview=preview)
+    default = coif.render(strands, **common)
+    for option, words in {
+        "shading": ["kajiya-kay", "marschner", "energy-conserving", "dual-scattering"],
+        "visibility": ["none", "light-map", "occupancy", "exact"],
+        "transparency": ["opaque", "stochastic", "weighted-average", "half-angle-slices", "exact-lists"],
+    }.items():
+        pictures = [coif.render(strands, **common, **{option: word}) for word in words]
+        for k, picture in enumerate(pictures):
+            assert (picture[..., 3] > 0).any()
+            assert not np.array_equal(picture, default), (option, words[k])
+            assert all(not np.array_equal(picture, other) for other in pictures[:k]), (option, words[k])
+        with pytest.raises(ValueError, match=f"{option} is one of .*{words[0]}.*not 'blue'"):
+            coif.render(strands, **common, **{option: "blue"})
+    assert not np.array_equal(coif.render(strands, **common, layers=3), default)
+    session = coif.PreviewSession(preview)
+    session.set_strands(strands)
+    shown = session.render(size=(48, 48), shading="dual-scattering", transparency="half-angle-slices")
+    assert any(stage == "half-angle slices" and state == "ran" for stage, state, _ in session.stages)
+    assert shown.shape == (48, 48, 4)
