@@ -165,6 +165,7 @@ Fog makeFog(const CoarseStrands& strands, const PolygonMesh* head) {
 Openness openSides(const Fog& fog, const Vec3& up, const Context& context) {
   Openness open;
   open.up = up;
+  if (fog.hairOnly.empty()) return open;
   const auto& solid = fog.withHead.empty() ? fog.hairOnly : fog.withHead;
   open.sky = openHalf(fog.grid, solid, up, context);
   open.ground = openHalf(fog.grid, solid, -up, context);
