@@ -8,6 +8,7 @@
 #include "coif/light/path_tracer.h"
 #include "coif/preview/session.h"
 #include "coif/scene/evaluate.h"
+#include "coif/scene/seen_from_head.h"
 #include "render_frames.h"
 #include "render_options.h"
 #include "scene_options.h"

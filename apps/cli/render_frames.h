@@ -3,9 +3,6 @@
 
 #include <string>
 
-#include "coif/light/camera.h"
-#include "coif/light/ground.h"
-#include "coif/light/lights.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 
@@ -23,16 +20,7 @@ struct FrameArguments {
   /// simulate; InvalidArgument for a cache of another hair mesh or frames that it does not have.
   Result<DynamicsCache> load(const Scene& scene, Evaluation& evaluation, const Context& context) const;
   /// The frames asked for, from 0, one past the last; all of the motion without --frames.
-  std::size_t first() const, end(const DynamicsCache&motion) const;
+  std::size_t first() const, end(const DynamicsCache&held) const;
 };
-
-/// The camera as the head sees it: what moves with the head stands still there.
-Camera cameraFromHead(const Camera& camera, const RigidPose& pose);
-/// Lights that stand in the scene.
-Lights lightsFromHead(const Lights& lights, const RigidPose& pose);
-/// And the ground.
-Ground groundFromHead(const Ground& ground, const RigidPose& pose);
-/// The head where it is.
-PolygonMesh headInWorld(const PolygonMesh& head, const RigidPose& pose);
 
 }  // namespace coif::cli

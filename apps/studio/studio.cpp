@@ -9,6 +9,7 @@
 #include "coif/io/safe_file.h"
 #include "coif/scalp/example_head.h"
 #include "coif/scene/evaluate.h"
+#include "coif/scene/seen_from_head.h"
 
 namespace coif::studio {
 namespace {
@@ -20,14 +21,6 @@ constexpr double kPatienceSeconds = 0.2;  // for a command, before the window go
 double niceStep(double size) {
   const double power = std::pow(10, std::floor(std::log10(std::max(size, 1e-12))));
   return size < 2 * power ? power : size < 5 * power ? 2 * power : 5 * power;
-}
-
-Camera cameraInHead(const Camera& world, const RigidPose& head) {
-  Camera out = world;
-  out.eye = head.local(world.eye);
-  out.target = head.local(world.target);
-  out.up = head.rotation.transpose() * world.up;
-  return out;
 }
 
 }  // namespace
@@ -223,12 +216,13 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
   request.revision = state != 0 ? hashCombine(editor.revision(), state) : editor.revision();
   request.scene = std::move(scene);
-  request.camera = played_ ? cameraInHead(view_.camera, played_->pose) : view_.camera;
+  request.camera = played_ ? cameraFromHead(view_.camera, played_->pose) : view_.camera;
   request.draft = !fine;
   request.surface = document_->head;
   request.strands = s.showStrands;
   request.head = s.showHead && headInPicture();
   request.lights = lightsOf(look.light, editor.scene().upAxis);
+  if (played_) request.lights = lightsFromHead(request.lights, played_->pose);
   PreviewOptions& options = request.options;
   const int reduce = fine ? 1 : 2;  // a draft first, the fine picture once all is at rest
   options.width = std::max(view_.width() / reduce, 8);
@@ -321,7 +315,7 @@ bool Studio::frame() {
     if (document_) {  // a key may have opened another
       // A head that moves is drawn by a camera that moves the other way.
       const Camera worldCamera = view_.camera;
-      if (playedMesh_) view_.camera = cameraInHead(worldCamera, played_->pose);
+      if (playedMesh_) view_.camera = cameraFromHead(worldCamera, played_->pose);
       project();
       drawUnderView();
       view_.drawPicture(window_.canvas().texture());

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coif/base/random.h"
 #include "coif/light/image_metrics.h"
 #include "coif/scalp/example_head.h"
 #include "preview_fixture.h"
@@ -10,7 +9,7 @@
 namespace coif {
 namespace {
 
-using testing::addStrand;
+using testing::addStrand, testing::sceneOf, testing::tuft;
 using EyeLayers = testing::PreviewTest;
 
 // Looks along -z at the origin so that a pixel measures exactly 1 / 100 there.
@@ -25,25 +24,6 @@ PreviewOptions layered(PreviewOptions options) {
   options.transparency = PreviewTransparency::DepthLayers;
   options.leaveOut = false;  // wide hairs too
   return options;
-}
-
-StrandSet tuft(std::size_t count, float width) {
-  StrandSet strands;
-  for (std::size_t s = 0; s < count; ++s) {
-    const CounterRandom random(5, s);
-    const Vec3f root(float(random.uniform(0)) - 0.5f, float(random.uniform(1)) * 0.2f,
-                     float(random.uniform(2)) - 0.5f);
-    const Vec3f lean(0.2f * float(random.uniform(3)), 0.3f, 0.1f);
-    addStrand(strands, {root, root + lean, root + 2.0f * lean + Vec3f(0.1f, 0, 0)}, width);
-  }
-  return strands;
-}
-
-PreviewScene sceneOf(const StrandSet& strands) {
-  PreviewScene scene;
-  scene.strands = &strands;
-  scene.camera = frameBox({Vec3(-0.6, 0, -0.6), Vec3(0.8, 1, 0.8)}, UpAxis::Y, 20, 10);
-  return scene;
 }
 
 FloatImage over(const Image& image, float grey) {

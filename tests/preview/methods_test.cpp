@@ -3,33 +3,13 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "coif/base/random.h"
 #include "preview_fixture.h"
 
 namespace coif {
 namespace {
 
-using testing::addStrand;
+using testing::addStrand, testing::sceneOf, testing::tuft;
 using Methods = testing::PreviewTest;
-
-StrandSet tuft(std::size_t count, float width) {
-  StrandSet strands;
-  for (std::size_t s = 0; s < count; ++s) {
-    const CounterRandom random(3, s);
-    const Vec3f root(float(random.uniform(0)) - 0.5f, float(random.uniform(1)) * 0.2f,
-                     float(random.uniform(2)) - 0.5f);
-    const Vec3f lean(0.2f * float(random.uniform(3)), 0.3f, 0.1f);
-    addStrand(strands, {root, root + lean, root + 2.0f * lean + Vec3f(0.1f, 0, 0)}, width);
-  }
-  return strands;
-}
-
-PreviewScene sceneOf(const StrandSet& strands) {
-  PreviewScene scene;
-  scene.strands = &strands;
-  scene.camera = frameBox({Vec3(-0.6, 0, -0.6), Vec3(0.8, 1, 0.8)}, UpAxis::Y, 20, 10);
-  return scene;
-}
 
 double meanColor(const Image& image) {
   double sum = 0, weight = 0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "coif/base/random.h"
 #include "coif/preview/preview.h"
 
 namespace coif::testing {
@@ -46,6 +47,26 @@ inline void addStrand(StrandSet& strands, std::initializer_list<Vec3f> points, f
   strands.points.insert(strands.points.end(), points);
   strands.widths.resize(strands.points.size(), width);
   strands.offsets.push_back(strands.points.size());
+}
+
+/// Leaning hairs on a square of one, and a camera that frames them.
+inline StrandSet tuft(std::size_t count, float width) {
+  StrandSet strands;
+  for (std::size_t s = 0; s < count; ++s) {
+    const CounterRandom random(3, s);
+    const Vec3f root(float(random.uniform(0)) - 0.5f, float(random.uniform(1)) * 0.2f,
+                     float(random.uniform(2)) - 0.5f);
+    const Vec3f lean(0.2f * float(random.uniform(3)), 0.3f, 0.1f);
+    addStrand(strands, {root, root + lean, root + 2.0f * lean + Vec3f(0.1f, 0, 0)}, width);
+  }
+  return strands;
+}
+
+inline PreviewScene sceneOf(const StrandSet& strands) {
+  PreviewScene scene;
+  scene.strands = &strands;
+  scene.camera = frameBox({Vec3(-0.6, 0, -0.6), Vec3(0.8, 1, 0.8)}, UpAxis::Y, 20, 10);
+  return scene;
 }
 
 }  // namespace coif::testing
