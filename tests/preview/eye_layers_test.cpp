@@ -40,13 +40,15 @@ TEST_F(EyeLayers, ALineCoversLengthTimesWidthAlongAnyDirection) {
     for (const float widthPx : {0.05f, 0.25f, 0.6f, 0.95f, 2.5f}) {
       StrandSet strands;
       const Vec3f along(0.5f * float(std::cos(angle)), 0.5f * float(std::sin(angle)), 0);
-      addStrand(strands, {Vec3f(0.0031f, 0.0017f, 0) - along, Vec3f(0.0031f, 0.0017f, 0) + along}, widthPx / 100);
+      addStrand(strands, {Vec3f(0.0031f, 0.0017f, 0) - along, Vec3f(0.0031f, 0.0017f, 0) + along},
+                widthPx / 100);
       PreviewScene scene;
       scene.strands = &strands;
       scene.camera = straightCamera(256);
       // Optical depths are kept in 1/65536, a covered pixel is 0.999; 8-bit alpha rounds up to three pixels a
       // column by half a step at most, at random. At 45° a column's ends cut a wide ribbon askew.
-      EXPECT_NEAR(alphaSum(render(scene, layered(small(256, 1))).image), 100 * widthPx, 0.35 + 0.006 * 100 * widthPx)
+      EXPECT_NEAR(alphaSum(render(scene, layered(small(256, 1))).image), 100 * widthPx,
+                  0.35 + 0.006 * 100 * widthPx)
           << angle << ", " << widthPx << " pixels wide";
     }
   }
@@ -85,8 +87,8 @@ TEST_F(EyeLayers, ALayerInFrontHidesWhatIsBehindAndTheHeadHidesBoth) {
   PreviewOptions options = layered(small(128, 1));
   options.shadows = false;
   const FloatImage front = toLinear(render(scene, options).image);
-  // The front curtain covers a pixel three times over and lets e^-3 of the other's light through; its own blue is a
-  // fourteenth of its red, and white where it reflects.
+  // The front curtain covers a pixel three times over and lets e^-3 of the other's light through; its own
+  // blue is a fourteenth of its red, and white where it reflects.
   EXPECT_GT(front.at(64, 64)[0], 5 * front.at(64, 64)[2]);
   PolygonMesh wall;
   wall.positions = {{-1, -1, 0.3}, {1, -1, 0.3}, {1, 1, 0.3}, {-1, 1, 0.3}};
@@ -116,7 +118,8 @@ TEST_F(EyeLayers, ManyHairsInOnePixelAddUpWithoutOverflow) {
   for (std::size_t i = 0; i < many.rgba.size(); i += 4) {
     if (one.rgba[i + 3] < 250) continue;
     ++brightest;
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(many.rgba[i + c], one.rgba[i + c], 24);  // each hair's own tint
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(many.rgba[i + c], one.rgba[i + c], 24);  // each hair's own tint
     EXPECT_EQ(many.rgba[i + 3], 255);
   }
   EXPECT_GT(brightest, 0);
@@ -130,6 +133,27 @@ TEST_F(EyeLayers, IsChosenWhereThereIsNoGpuAndHairIsThin) {
   const bool software = preview()->software();
   EXPECT_EQ(render(sceneOf(thin), options).image.rgba == render(sceneOf(thin), asked).image.rgba, software);
   EXPECT_NE(render(sceneOf(wide), options).image.rgba, render(sceneOf(wide), asked).image.rgba);
+}
+
+// Buffers hold 819 rows of this width where a storage block has 128 MiB: the picture is made in two parts.
+TEST_F(EyeLayers, APictureOfManyRowsIsWhole) {
+  const StrandSet strands = tuft(3000, 0.004f);
+  PreviewOptions options = small(1024, 1);
+  options.transparency = PreviewTransparency::Stochastic;
+  const Image truth = render(sceneOf(strands), options).image;
+  options.transparency = PreviewTransparency::DepthLayers;
+  const Image image = render(sceneOf(strands), options).image;
+  for (int band = 0; band < 8; ++band) {
+    const auto covered = [&](const Image& picture) {
+      double sum = 0;
+      for (std::size_t i = std::size_t(band) * 128 * 1024; i < std::size_t(band + 1) * 128 * 1024; ++i)
+        sum += picture.rgba[4 * i + 3] / 255.0;
+      return sum;
+    };
+    // The truth is a random part of four samples a pixel: far below a hundredth over a band, and rims of the
+    // tuft.
+    EXPECT_NEAR(covered(image), covered(truth), 0.03 * covered(truth) + 20) << "rows " << 128 * band;
+  }
 }
 
 }  // namespace
