@@ -137,12 +137,19 @@ TEST_F(EyeLayers, IsChosenWhereThereIsNoGpuAndHairIsThin) {
 
 // Buffers hold 819 rows of this width where a storage block has 128 MiB: the picture is made in two parts.
 TEST_F(EyeLayers, APictureOfManyRowsIsWhole) {
-  const StrandSet strands = tuft(3000, 0.004f);
-  PreviewOptions options = small(1024, 1);
+  const StrandSet strands = tuft(60000, 0.0004f);
+  PolygonMesh head;
+  head.positions = {{-0.1, 0.4, 0}, {0.1, 0.4, 0}, {0, 0.6, 0}};
+  head.faceOffsets = {0, 3};
+  head.corners = {0, 1, 2};
+  PreviewScene scene = sceneOf(strands);
+  scene.head = &head;
+  scene.ground = Ground{Vec3(0, -0.1, 0), Vec3::UnitY(), 0.7, Vec3f::Constant(0.1f)};
+  PreviewOptions options = small(1024, 2);
   options.transparency = PreviewTransparency::Stochastic;
-  const Image truth = render(sceneOf(strands), options).image;
-  options.transparency = PreviewTransparency::DepthLayers;
-  const Image image = render(sceneOf(strands), options).image;
+  const Image truth = render(scene, options).image;
+  options.transparency = PreviewTransparency::Auto;
+  const Image image = render(scene, options).image;
   for (int band = 0; band < 8; ++band) {
     const auto covered = [&](const Image& picture) {
       double sum = 0;
