@@ -1,5 +1,7 @@
 // One reader under libFuzzer: any bytes give a valid result or an error.
+#include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "io/formats.h"
 
@@ -11,6 +13,21 @@ bool holds(const coif::PolygonMesh& mesh) {
 }
 bool holds(const coif::StrandSet& set) {
   return validate(set, false).ok();
+}
+/// Rows of whole length, each of weights that add up to 1 or are all 0.
+bool holds(const std::optional<coif::SkinBinding>& skin) {
+  if (!skin) return true;
+  const std::size_t n = skin->influences;
+  if (n == 0 || skin->joints.size() != skin->weights.size() || skin->joints.size() % n != 0) return false;
+  for (std::size_t row = 0; row < skin->weights.size(); row += n) {
+    double sum = 0;
+    for (std::size_t i = row; i < row + n; ++i) {
+      if (!(skin->weights[i] >= 0)) return false;
+      sum += skin->weights[i];
+    }
+    if (sum != 0 && std::abs(sum - 1) > 1e-4) return false;  // n ≤ a few dozen floats, each rounded once
+  }
+  return true;
 }
 
 }  // namespace

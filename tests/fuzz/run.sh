@@ -23,6 +23,7 @@ if [ -x "$bin/test_io" ]; then  # strands that Coif writes: only those reach the
 fi
 seed usd_mesh '*.usd*'
 seed usd_strands '*.usd*'
+seed usd_skin '*.usd*'
 mkdir -p "$work"/{ply,off,stl,scene}
 cp "$(dirname "$0")"/../scene/files/*.coif "$work/scene"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n' >"$work/ply/text"
