@@ -130,10 +130,18 @@ Status translate(HairMesh& mesh, const VertexWeights& weights, const Vec3& by) {
   return moveAll(mesh, weights, [&](const Vec3& p, double w) -> Vec3 { return p + w * by; });
 }
 
-Status scale(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& factors) {
-  return moveAll(mesh, weights, [&](const Vec3& p, double w) -> Vec3 {
-    return p + w * ((p - pivot).cwiseProduct(factors) - (p - pivot));
-  });
+Status scale(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& factors,
+             const Mat3& axes) {
+  if (!((axes.transpose() * axes - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6))
+    return refuse("the axes are not unit vectors at right angles", "axes");
+  if (axes == Mat3::Identity()) {
+    return moveAll(mesh, weights, [&](const Vec3& p, double w) -> Vec3 {
+      return p + w * ((p - pivot).cwiseProduct(factors) - (p - pivot));
+    });
+  }
+  const Mat3 stretch = axes * (factors - Vec3::Ones()).asDiagonal() * axes.transpose();
+  return moveAll(mesh, weights,
+                 [&](const Vec3& p, double w) -> Vec3 { return p + w * (stretch * (p - pivot)); });
 }
 
 Status rotate(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& axis,

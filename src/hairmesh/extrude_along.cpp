@@ -83,6 +83,46 @@ Vec3 bent(const Vec3& direction, const ExtrudePath& path) {
   return turned.norm() > 1e-12 ? Vec3(turned.normalized()) : direction;  // against each other: as it was
 }
 
+/// Where a curve carries points that lay about the tips' middle, on its own side or on the other.
+class Carrier {
+ public:
+  Carrier(const HairMesh& mesh, std::span<const BundleId> bundles, const ExtrudePath& path)
+      : path_(path), curve_(path.curve) {
+    for (std::size_t i = 0; i < bundles.size(); ++i) {
+      const Bundle& bundle = mesh.bundles()[mesh.indexOf(bundles[i])];
+      for (std::uint32_t v : bundle.face(bundle.height()))
+        side_[v] |= path.sides ? std::uint8_t(path.sides->of[i]) : std::uint8_t(CurveSides::Curve);
+    }
+    double count = 0;
+    for (const auto& [v, side] : side_) {
+      if (side & CurveSides::Curve) middle_ += mesh.position(v), ++count;
+    }
+    middle_ /= std::max(count, 1.0);
+  }
+
+  double length() const { return curve_.length(); }
+  /// Of a tip's vertex that was `tip` before and started at `start`.
+  Vec3 carried(std::uint32_t tip, const Vec3& start, double s) const {
+    const std::uint8_t side = side_.at(tip);
+    if (side == CurveSides::Curve) return along(start, s);
+    const Vec3 other = image(along(image(start), s));
+    return side == CurveSides::Image ? other : Vec3(0.5 * (along(start, s) + other));
+  }
+
+ private:
+  Vec3 along(const Vec3& start, double s) const {
+    return middle_ + curve_.at(s) - path_.curve.front() + curve_.turnTo(s) * (start - middle_);
+  }
+  Vec3 image(const Vec3& p) const {
+    return p - 2 * (p - path_.sides->point).dot(path_.sides->normal) * path_.sides->normal;
+  }
+
+  const ExtrudePath& path_;
+  Curve curve_;
+  Vec3 middle_ = Vec3::Zero();
+  std::map<std::uint32_t, std::uint8_t> side_;  // by the tips' vertices
+};
+
 /// Extrudes once by the given offsets of the tips' vertices; what it made, by parent.
 Result<Created> layerBy(HairMesh& mesh, std::span<const BundleId> bundles,
                         const std::map<std::uint32_t, Vec3>& offsets) {
@@ -96,13 +136,13 @@ Result<Created> layerBy(HairMesh& mesh, std::span<const BundleId> bundles,
 
 Result<Created> extrudeAlong(HairMesh& mesh, std::span<const BundleId> bundles, const ExtrudePath& path) {
   COIF_TRY(check(path));
-  const Curve curve(path.curve);
-  if (!path.curve.empty() && !(curve.length() > 0)) return refuse("the curve has no length", "curve");
+  if (path.sides && path.sides->of.size() != bundles.size())
+    return refuse("there must be one side a bundle", "sides");
   COIF_ASSIGN(auto directions, tipDirections(mesh, bundles));
-  Vec3 middle = Vec3::Zero();
-  for (const auto& [v, direction] : directions) middle += mesh.position(v) / double(directions.size());
-  std::map<std::uint32_t, Vec3> starts;
-  for (const auto& [v, direction] : directions) starts[v] = mesh.position(v);
+  const Carrier carrier(mesh, bundles, path);
+  if (!path.curve.empty() && !(carrier.length() > 0)) return refuse("the curve has no length", "curve");
+  std::map<std::uint32_t, std::uint32_t> tips;  // what each vertex grew from
+  for (const auto& [v, direction] : directions) tips[v] = v;
 
   HairMesh grown = mesh;
   Created all;
@@ -113,19 +153,19 @@ Result<Created> extrudeAlong(HairMesh& mesh, std::span<const BundleId> bundles, 
         direction = bent(direction, path);
         offsets[v] = path.length / path.layers * direction;
       } else {
-        const double s = curve.length() * layer / path.layers;
-        const Vec3 to = middle + curve.at(s) - path.curve.front() + curve.turnTo(s) * (starts[v] - middle);
-        offsets[v] = to - grown.position(v);
+        const double s = carrier.length() * layer / path.layers;
+        offsets[v] = carrier.carried(tips[v], mesh.position(tips[v]), s) - grown.position(v);
       }
     }
     COIF_ASSIGN(const Created created, layerBy(grown, bundles, offsets));
-    std::map<std::uint32_t, Vec3> nextDirections, nextStarts;
+    std::map<std::uint32_t, Vec3> nextDirections;
+    std::map<std::uint32_t, std::uint32_t> nextTips;
     for (VertexId id : created.vertices) {
       const std::uint32_t v = grown.indexOf(id), parent = grown.vertices()[v].parent;
       nextDirections[v] = directions[parent];
-      nextStarts[v] = starts[parent];
+      nextTips[v] = tips[parent];
     }
-    directions = std::move(nextDirections), starts = std::move(nextStarts);
+    directions = std::move(nextDirections), tips = std::move(nextTips);
     all.faces = created.faces;
     all.vertices.insert(all.vertices.end(), created.vertices.begin(), created.vertices.end());
   }

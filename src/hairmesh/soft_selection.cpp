@@ -1,9 +1,10 @@
-// Soft selections and the normals of the hair's outside.
+// Soft selections, the normals of the hair's outside, and the axes of a selection.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <queue>
 
 #include "coif/hairmesh/edit.h"
+#include "coif/scalp/geodesic.h"
 #include "coif/scalp/polygon_mesh.h"
 #include "hairmesh/hull.h"
 #include "hairmesh/select.h"
@@ -15,45 +16,34 @@ using namespace hairmesh;
 
 constexpr double kFar = 1e300;
 
-struct Graph {
-  std::vector<std::vector<std::uint32_t>> neighbours;
-  explicit Graph(std::size_t vertices) : neighbours(vertices) {}
-  void join(std::uint32_t a, std::uint32_t b) { neighbours[a].push_back(b), neighbours[b].push_back(a); }
-};
+using Triangle = std::array<std::uint32_t, 3>;
 
-Graph surfaceGraph(const HairMesh& mesh) {
-  Graph graph(mesh.vertices().size());
+/// Every face of every layer and every side of every bundle: quads by both diagonals, so that neither side of
+/// a mirror is favoured; other faces as fans.
+std::vector<Triangle> surfaceTriangles(const HairMesh& mesh) {
+  std::vector<Triangle> out;
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    out.insert(out.end(), {{a, b, c}, {a, c, d}, {a, b, d}, {b, c, d}});
+  };
   for (const Bundle& bundle : mesh.bundles()) {
     for (std::uint32_t k = 0; k <= bundle.height(); ++k) {
       const auto face = bundle.face(k);
-      for (std::uint32_t i = 0; i < bundle.corners; ++i) graph.join(face[i], face[(i + 1) % bundle.corners]);
-      if (bundle.corners == 4) graph.join(face[0], face[2]), graph.join(face[1], face[3]);
+      if (bundle.corners == 4) {
+        quad(face[0], face[1], face[2], face[3]);
+        continue;
+      }
+      for (std::uint32_t i = 1; i + 1 < bundle.corners; ++i) out.push_back({face[0], face[i], face[i + 1]});
     }
   }
-  for (const SideQuad& q : sideQuads(mesh)) {
-    graph.join(q.a, q.c), graph.join(q.b, q.d), graph.join(q.a, q.d), graph.join(q.b, q.c);
-  }
-  return graph;
+  for (const SideQuad& q : sideQuads(mesh)) quad(q.a, q.b, q.d, q.c);
+  return out;
 }
 
-/// Dijkstra from the selection, up to `radius`.
 std::vector<double> distancesAlong(const HairMesh& mesh, std::span<const std::uint32_t> selection,
                                    double radius) {
-  const Graph graph = surfaceGraph(mesh);
-  std::vector<double> distance(mesh.vertices().size(), kFar);
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (std::uint32_t v : selection) distance[v] = 0, open.push({0, v});
-  while (!open.empty()) {
-    const auto [d, v] = open.top();
-    open.pop();
-    if (d > distance[v]) continue;
-    for (std::uint32_t n : graph.neighbours[v]) {
-      const double further = d + (mesh.position(n) - mesh.position(v)).norm();
-      if (further < distance[n] && further < radius) distance[n] = further, open.push({further, n});
-    }
-  }
-  return distance;
+  std::vector<Vec3> positions;
+  for (const HairVertex& vertex : mesh.vertices()) positions.push_back(vertex.position);
+  return geodesicDistances(positions, surfaceTriangles(mesh), selection, radius);
 }
 
 std::vector<double> distancesInSpace(const HairMesh& mesh, std::span<const std::uint32_t> selection) {
@@ -107,6 +97,36 @@ Result<VertexWeights> softSelection(const HairMesh& mesh, std::span<const std::u
 
 std::vector<Vec3> hullNormals(const HairMesh& mesh) {
   return hairmesh::hullNormals(mesh, sideQuads(mesh));
+}
+
+Mat3 selectionAxes(const HairMesh& mesh, std::span<const std::uint32_t> vertices, AxesKind kind) {
+  if (kind == AxesKind::World || vertices.empty()) return Mat3::Identity();
+  std::vector<std::uint8_t> chosen(mesh.vertices().size(), 0);
+  for (const std::uint32_t v : vertices) chosen[v] = 1;
+  const std::vector<Vec3> normals = hullNormals(mesh);
+  Vec3 hair = Vec3::Zero(), normal = Vec3::Zero();
+  for (std::uint32_t v = 0; v < chosen.size(); ++v) {
+    const std::uint32_t parent = mesh.vertices()[v].parent;
+    const bool ofRoot = parent != kNone && chosen[parent] && mesh.vertices()[parent].layer == 0;
+    // A root has no link down; the one up from it stands for its own.
+    if (parent != kNone && (chosen[v] || ofRoot))
+      hair += (mesh.position(v) - mesh.position(parent)).normalized();
+    if (chosen[v]) normal += normals[v];
+  }
+  Mat3 axes;
+  Vec3 y = kind == AxesKind::Hair ? hair : normal, z = kind == AxesKind::Hair ? normal : hair;
+  if (!(y.norm() > 1e-9)) y = kind == AxesKind::Hair ? Vec3::UnitY() : Vec3::UnitZ();
+  y.normalize();
+  z -= z.dot(y) * y;
+  if (!(z.norm() > 1e-9)) {  // no second direction: the scene's axis that is least along the first
+    int least = 0;
+    y.cwiseAbs().minCoeff(&least);
+    z = Vec3::Unit(least) - y[least] * y;
+  }
+  z.normalize();
+  if (kind == AxesKind::Normal) std::swap(y, z);
+  axes << y.cross(z), y, z;
+  return axes;
 }
 
 namespace hairmesh {

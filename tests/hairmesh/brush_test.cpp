@@ -193,6 +193,31 @@ TEST(Brush, RefusesWhatItCannotDo) {
   EXPECT_EQ(mesh, before);
 }
 
+TEST(Brush, DrawnPointByPointItIsTheSameToTheBit) {
+  std::vector<Vec3> path;
+  for (int i = 0; i <= 40; ++i)  // steps shorter and longer than from dab to dab
+    path.emplace_back(1 + 0.1 * i, 3 + std::sin(0.3 * i), 3 + 0.02 * i * (i % 3));
+  VertexWeights mask(field().vertices().size(), 1);
+  for (std::size_t v = 0; v < mask.size(); v += 7) mask[v] = 0.3;
+  for (BrushKind kind : {BrushKind::Comb, BrushKind::Grab, BrushKind::Push, BrushKind::Pull,
+                         BrushKind::Inflate, BrushKind::Twist, BrushKind::Smooth}) {
+    BrushStroke stroke;
+    stroke.kind = kind, stroke.radius = 1.3, stroke.strength = 0.7;
+    stroke.path = {path.front()};
+    auto growing = GrowingStroke::begin(field(), stroke, mask);
+    ASSERT_TRUE(growing.ok());
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      ASSERT_TRUE(growing->extend(std::span(path).subspan(i, 1)).ok());
+      stroke.path.push_back(path[i]);
+      HairMesh whole = field();
+      ASSERT_TRUE(brush(whole, stroke, mask).ok());
+      EXPECT_TRUE(growing->mesh().value() == whole) << "kind " << int(kind) << ", point " << i;
+    }
+  }
+  auto growing = GrowingStroke::begin(field(), {});
+  EXPECT_FALSE(growing.ok()) << "no point";
+}
+
 TEST(SoftSelection, FalloffsMeetTheirDefinitions) {
   for (Falloff f : {Falloff::Smooth, Falloff::Linear, Falloff::Sharp, Falloff::Round, Falloff::Constant}) {
     EXPECT_EQ(falloffAt(f, 0), 1);
@@ -206,19 +231,60 @@ TEST(SoftSelection, FalloffsMeetTheirDefinitions) {
   EXPECT_DOUBLE_EQ(falloffAt(Falloff::Constant, 0.99), 1);
 }
 
-TEST(SoftSelection, AlongTheSurfaceIsNearlyTheDistanceInThePlane) {
-  const HairMesh mesh = gridMesh(20, 20);
-  const std::uint32_t centre = at(mesh, 10, 10, 0);
-  const std::uint32_t chosen[] = {centre};
-  const auto weights = softSelection(mesh, chosen, 9, Falloff::Linear, SoftDistance::Surface);
-  ASSERT_TRUE(weights.ok());
-  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
-    const double straight = (mesh.position(v) - Vec3(10, 10, 0)).norm(), along = 9 * (1 - (*weights)[v]);
-    if (along >= 9) continue;
-    EXPECT_GE(along, straight - 1e-12);
-    // Steps along sides and diagonals of squares: at worst 1 / cos 22.5° too long.
-    EXPECT_LE(along, straight / std::cos(M_PI / 8) + 1e-12);
+/// A grid of unit squares in the plane z = 0, folded along its lines of constant x into a prism of `sides`.
+HairMesh prism(int columns, int rows, int sides) {
+  std::vector<Vec3> positions;
+  const double radius = 0.5 / std::sin(M_PI / sides);
+  for (int y = 0; y <= rows; ++y) {
+    for (int x = 0; x <= columns; ++x) {
+      const double angle = 2 * M_PI * x / sides;
+      positions.emplace_back(radius * std::cos(angle), y, radius * std::sin(angle));
+    }
   }
+  std::vector<std::uint32_t> offsets{0}, corners;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const auto a = std::uint32_t(y * (columns + 1) + x), up = std::uint32_t(columns + 1);
+      corners.insert(corners.end(), {a, a + up, a + up + 1, a + 1});
+      offsets.push_back(std::uint32_t(corners.size()));
+    }
+  }
+  return HairMesh::fromRoot(positions, offsets, corners).value();
+}
+
+TEST(SoftSelection, AlongTheSurfaceIsTheDistanceOfItsFlatImage) {
+  // A prism unrolls into the plane, so its distances are the plane's. Reached by unfolding some forty
+  // triangles one after the other, each with a rounding of a few units.
+  constexpr int kColumns = 20, kRows = 20;
+  for (const HairMesh& mesh : {gridMesh(kColumns, kRows), prism(kColumns, kRows, 24)}) {
+    const std::uint32_t chosen[] = {10 * (kColumns + 1) + 10};
+    const auto weights = softSelection(mesh, chosen, 9, Falloff::Linear, SoftDistance::Surface);
+    ASSERT_TRUE(weights.ok());
+    for (int y = 0; y <= kRows; ++y) {
+      for (int x = 0; x <= kColumns; ++x) {
+        const double flat = std::hypot(x - 10, y - 10),
+                     along = 9 * (1 - (*weights)[std::size_t(y * (kColumns + 1) + x)]);
+        EXPECT_NEAR(along, std::min(flat, 9.0), 1e-12) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(SoftSelection, AlongTheSurfaceCountsFromTheNearestOfSeveral) {
+  const HairMesh mesh = gridMesh(20, 20);
+  const std::uint32_t chosen[] = {at(mesh, 4, 7, 0), at(mesh, 15, 12, 0)};
+  const auto weights = softSelection(mesh, chosen, 12, Falloff::Linear, SoftDistance::Surface);
+  double worst = 1;
+  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
+    const double flat = std::min((mesh.position(v) - mesh.position(chosen[0])).norm(),
+                                 (mesh.position(v) - mesh.position(chosen[1])).norm()),
+                 along = 12 * (1 - (*weights)[v]);
+    if (flat < 1e-9) continue;
+    EXPECT_GE(along, std::min(flat, 12.0) - 1e-12);
+    worst = std::max(worst, along / flat);
+  }
+  // Where the two parts meet the way goes along sides and diagonals of squares: at worst 1 / cos 22.5°.
+  EXPECT_LE(worst, 1 / std::cos(M_PI / 8));
 }
 
 TEST(SoftSelection, AlongTheSurfaceDoesNotJumpAGap) {
@@ -233,6 +299,47 @@ TEST(SoftSelection, AlongTheSurfaceDoesNotJumpAGap) {
   EXPECT_GT((*space)[4], 0.9);
   EXPECT_EQ((*surface)[4], 0);
   EXPECT_GT((*surface)[0], 0);
+}
+
+TEST(SelectionAxes, FollowTheHairAndItsOutside) {
+  const HairMesh mesh = field();  // straight up in z, its outside square
+  const std::uint32_t front[] = {at(mesh, 2, 0, 2), at(mesh, 3, 0, 2)};
+  Mat3 expected;
+  expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // x to the right, y up the hair (z), z out of the front (−y)
+  // Means of exact unit vectors, normalised: a few roundings.
+  EXPECT_LT((selectionAxes(mesh, front, AxesKind::Hair) - expected).norm(), 1e-14);
+  EXPECT_LT((selectionAxes(mesh, front, AxesKind::Normal) - expected).norm(), 1e-14);
+  EXPECT_EQ(selectionAxes(mesh, front, AxesKind::World), Mat3(Mat3::Identity()));
+  HairMesh leaning = mesh;  // every layer half a unit further to the front
+  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v)
+    leaning.setPosition(v, mesh.position(v) - Vec3(0, 0.5 * mesh.vertices()[v].layer, 0));
+  const Vec3 along = Vec3(0, -0.5, 1).normalized(), out = Vec3(0, -1, -0.5).normalized();
+  for (AxesKind kind : {AxesKind::Hair, AxesKind::Normal}) {
+    const Mat3 axes = selectionAxes(leaning, front, kind);
+    EXPECT_LT((axes.col(1) - along).norm(), 1e-14);
+    EXPECT_LT((axes.col(2) - out).norm(), 1e-14);
+    EXPECT_NEAR(axes.determinant(), 1, 1e-14);
+  }
+  // Roots have links only upwards; inner ones have no outside: still axes at right angles.
+  const std::uint32_t inner[] = {at(mesh, 3, 3, 0)};
+  const Mat3 axes = selectionAxes(mesh, inner, AxesKind::Hair);
+  EXPECT_LT((axes.col(1) - Vec3(0, 0, 1)).norm(), 1e-14);
+  EXPECT_NEAR(axes.determinant(), 1, 1e-14);
+}
+
+TEST(Edit, ScalesAlongAnyAxes) {
+  HairMesh mesh = field();
+  const VertexWeights all(mesh.vertices().size(), 1);
+  Mat3 turned;
+  turned << 0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1;
+  ASSERT_TRUE(scale(mesh, all, Vec3(1, 1, 0), Vec3(2, 1, 1), turned).ok());
+  const HairMesh before = field();
+  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
+    const Vec3 d = before.position(v) - Vec3(1, 1, 0), axis = turned.col(0);
+    // Twice as far along the first axis; coordinates below 20.
+    EXPECT_LT((mesh.position(v) - (before.position(v) + d.dot(axis) * axis)).norm(), 1e-14);
+  }
+  EXPECT_FALSE(scale(mesh, all, Vec3::Zero(), Vec3::Ones(), Mat3(Mat3::Zero())).ok());
 }
 
 }  // namespace

@@ -188,9 +188,39 @@ TEST(Editor, SymmetricOperationsActOnBothSides) {
   ASSERT_TRUE(editor.run("weld_edges").ok()) << "on the plane: its own partner, joined once";
   EXPECT_EQ(editor.mesh().vertices().size(), before);
   ASSERT_TRUE(editor.run("select", ids("faces", {0, 2})).ok());
-  EXPECT_FALSE(editor.run("extrude", {{"curve", std::vector<double>{0, 0, 0, 1, 0, 0}}}).ok());
   ASSERT_TRUE(editor.run("extrude", {{"layers", 3.0}, {"bend", 0.5}}).ok());
   EXPECT_TRUE(complete());
+}
+
+TEST(Editor, ACurveIsFollowedOnBothSides) {
+  Editor editor(gridScene(4, 2));
+  ASSERT_TRUE(editor.run("symmetry", {{"on", true}, {"point", Vec3(2, 0, 0)}}).ok());
+  const std::vector<double> curve{0.5, 0, 2, 0, 0, 3, -1, 1, 3.5};
+  const CommandArguments along{{"layers", 3.0}, {"curve", curve}};
+  for (const auto& faces : {std::vector<double>{0, 2}, std::vector<double>{0, 2, 3, 2},
+                            std::vector<double>{1, 2}, std::vector<double>{5, 2, 6, 2}}) {
+    ASSERT_TRUE(editor.run("select", ids("faces", faces)).ok());
+    ASSERT_TRUE(editor.run("extrude", along).ok());
+    const Mirror mirror = findMirror(editor.mesh(), Vec3(2, 0, 0), Vec3::UnitX(), 1e-6).value();
+    EXPECT_TRUE(mirror.complete());
+    for (std::uint32_t v = 0; v < editor.mesh().vertices().size(); ++v) {
+      const Vec3 partner = editor.mesh().position(mirror.vertexPartner[v]);
+      // Coordinates below ten, a few roundings each.
+      EXPECT_LT((mirror.image(editor.mesh().position(v)) - partner).norm(), 1e-13);
+    }
+    // The side that was drawn on goes where the line leads: x ends 1.5 lower than it began.
+    const Bundle& bundle = editor.mesh().bundles()[0];
+    if (bundle.height() == 5 && editor.mesh().bundles()[1].height() == 2) {
+      Vec3 root = Vec3::Zero(), tip = Vec3::Zero();
+      for (std::uint32_t c = 0; c < 4; ++c) {
+        root += 0.25 * editor.mesh().position(bundle.face(2)[c]);
+        tip += 0.25 * editor.mesh().position(bundle.face(5)[c]);
+      }
+      EXPECT_NEAR(tip.x() - root.x(), -1.5, 1e-12);
+      EXPECT_NEAR(tip.z() - root.z(), 1.5, 1e-12);
+    }
+    ASSERT_TRUE(editor.run("undo").ok());
+  }
 }
 
 TEST(Editor, ABrushStrokeIsOneStepAndPlaysBack) {
@@ -212,6 +242,37 @@ TEST(Editor, ABrushStrokeIsOneStepAndPlaysBack) {
   selected["selected"] = true;
   ASSERT_TRUE(editor.run("brush", selected).ok());
   EXPECT_EQ(editor.undoCount(), 2u) << "all that is selected is frozen: nothing moved";
+}
+
+TEST(Editor, AStrokeSeenPointByPointIsTheStrokeThatIsDone) {
+  // What a tool asks for while it is dragged, kept from one attempt to the next, against an editor that is
+  // asked once.
+  PolygonMesh floor;
+  floor.positions = {{-9, -9, 1.5}, {9, -9, 1.5}, {9, 9, 1.5}, {-9, 9, 1.5}};
+  floor.addFace(std::vector<std::uint32_t>{0, 1, 2, 3});
+  const Surface head(floor);
+  Editor dragged(gridScene(4, 3));
+  dragged.setHead(&head);
+  ASSERT_TRUE(dragged.run("select_layer", {{"layer", 2.0}}).ok());
+  for (const char* kind : {"comb", "push", "twist", "comb"}) {  // the second stroke of a kind begins anew
+    Editor once(dragged.scene());
+    once.setHead(&head);
+    ASSERT_TRUE(once.run("select_layer", {{"layer", 2.0}}).ok());
+    CommandArguments stroke{{"kind", std::string(kind)}, {"radius", 1.5}, {"strength", 0.9}};
+    std::vector<double> path;
+    for (int i = 0; i < 12; ++i) {
+      for (double x : {0.3 * i, 2 + 0.1 * i, 3 - 0.1 * i}) path.push_back(x);
+      stroke["path"] = path;
+      const auto seen = dragged.attempt("brush", stroke);
+      ASSERT_TRUE(seen.ok());
+      if (i == 5 || i == 11) {
+        EXPECT_TRUE(*seen == once.attempt("brush", stroke).value()) << kind;
+      }
+    }
+    ASSERT_TRUE(once.run("brush", stroke).ok());
+    ASSERT_TRUE(dragged.run("brush", stroke).ok());
+    EXPECT_TRUE(dragged.mesh() == once.mesh()) << kind;
+  }
 }
 
 TEST(Editor, SnapsToTheGridTheScalpAndTheNextVertex) {
@@ -313,8 +374,8 @@ TEST(Commands, HaveUniqueNamesKeysAndHelp) {
 
 TEST(Commands, WithoutAKeyHaveAnotherWayIn) {
   // Lists that the mouse fills in, and settings that a panel shows.
-  const std::set<std::string> keyless{"select", "displace", "brush", "set_strands", "set_look", "set_light",
-                                      "set_dynamics"};
+  const std::set<std::string> keyless{"select",   "displace",  "brush",       "set_strands",
+                                      "set_look", "set_light", "set_dynamics"};
   for (const CommandInfo& info : commandInfos()) {
     EXPECT_EQ(info.key.empty(), keyless.contains(info.name)) << info.name;
   }

@@ -5,6 +5,8 @@
 // (place.h). Lengths in scene units. Cost: dabs × mesh.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "coif/hairmesh/edit.h"
@@ -34,5 +36,29 @@ struct BrushStroke {
 /// `mask`: what part of the stroke each vertex takes, by index; empty: all of it. Errors: InvalidArgument;
 /// the mesh is then unchanged.
 Status brush(HairMesh& mesh, const BrushStroke& stroke, const VertexWeights& mask = {});
+
+/// A stroke while it is being drawn. What comes out is bit for bit what brush() makes of the whole path; a
+/// point more costs the dabs that it adds.
+class GrowingStroke {
+ public:
+  /// Errors: as brush().
+  static Result<GrowingStroke> begin(const HairMesh& mesh, BrushStroke stroke, VertexWeights mask = {});
+  GrowingStroke(GrowingStroke&&) noexcept;
+  GrowingStroke& operator=(GrowingStroke&&) noexcept;
+  ~GrowingStroke();
+
+  /// Points that go on from the last one. Errors: InvalidArgument for one that is not finite; the stroke is
+  /// then as it was.
+  Status extend(std::span<const Vec3> points);
+  const BrushStroke& stroke() const;  ///< with the path so far
+  const VertexWeights& mask() const;
+  /// As brush() leaves it. Errors: InvalidArgument where a position is not finite.
+  Result<HairMesh> mesh() const;
+
+ private:
+  struct Impl;
+  explicit GrowingStroke(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace coif

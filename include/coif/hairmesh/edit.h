@@ -44,8 +44,8 @@ double falloffAt(Falloff falloff, double distance);
 /// What a soft selection's distance is.
 enum class SoftDistance {
   Space,    ///< as the crow flies
-  Surface,  ///< along edges, links to the parent and the diagonals of quads: over a plane grid of squares at
-            ///< most 8.3 % too long; what no edge connects is out of reach
+  Surface,  ///< along the faces of the layers and the sides of the bundles (geodesic.h), exact where they are
+            ///< flat; what no edge connects is out of reach
 };
 
 /// 1 on the selection, falling to 0 at `radius` from the nearest selected vertex; radius 0: the selection
@@ -58,9 +58,22 @@ Result<VertexWeights> softSelection(const HairMesh& mesh, std::span<const std::u
 /// faces where a vertex has none; zero for vertices inside.
 std::vector<Vec3> hullNormals(const HairMesh& mesh);
 
+/// Which way the axes of a selection point.
+enum class AxesKind {
+  World,   ///< the scene's own
+  Hair,    ///< y along the hair, root to tip; z as near to the outside's normal as that leaves
+  Normal,  ///< z along the mean normal of the hair's outside; y as near to the hair as that leaves
+};
+/// Three unit axes at right angles, as columns, right-handed: means over these vertices. A direction that the
+/// hair there does not have (no link, no outside) is taken from the scene's axes.
+Mat3 selectionAxes(const HairMesh& mesh, std::span<const std::uint32_t> vertices, AxesKind kind);
+
 // Moves. A vertex of weight w goes the fraction w of the way.
 Status translate(HairMesh& mesh, const VertexWeights& weights, const Vec3& by);
-Status scale(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& factors);
+/// By the factors along the columns of `axes`. Errors: InvalidArgument where those are not orthonormal to
+/// 1e-6.
+Status scale(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& factors,
+             const Mat3& axes = Mat3::Identity());
 /// By w times the angle, about the axis (any length > 0) through the pivot, right-handed.
 Status rotate(HairMesh& mesh, const VertexWeights& weights, const Vec3& pivot, const Vec3& axis,
               double angleRad);

@@ -42,6 +42,13 @@ Result<Created> extrudeFaces(HairMesh& mesh, std::span<const BundleId> bundles,
 Result<Created> extrudeFaces(HairMesh& mesh, std::span<const FaceRef> tips,
                              const ExtrudeOptions& options = {});
 
+/// Of a curve that both sides of a mirror plane follow, each its own image of it.
+struct CurveSides {
+  enum Side : std::uint8_t { Curve = 1, Image = 2, Both = 3 };
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< of the plane; unit length
+  std::vector<Side> of;  ///< by entry of the bundles; where Both meet, hair goes midway, so on the plane
+};
+
 /// How several layers follow each other from the tips.
 struct ExtrudePath {
   std::uint32_t layers = 1;  ///< >= 1
@@ -53,6 +60,7 @@ struct ExtrudePath {
   /// Instead: the tips are carried along this line as a whole and turned with it, without twist. It may begin
   /// anywhere.
   std::vector<Vec3> curve = {};
+  std::optional<CurveSides> sides = {};  ///< with a curve; none: all along the curve itself
 };
 
 /// extrudeFaces() layer by layer along a path. Returns the last faces, in the order given, and all new

@@ -1,6 +1,8 @@
 // Distance along a surface from a point of it.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,5 +24,14 @@ namespace coif {
 ///
 /// Errors: InvalidArgument without sources or for a source that is not on the surface.
 Result<std::vector<double>> geodesicDistances(const Surface& surface, std::span<const SurfacePoint> sources);
+
+/// The same over any triangles, of which more than two may share an edge, as the faces inside a hair mesh do:
+/// distance from the nearest source vertex, infinity beyond `limit` (mesh units). Indices must be in range;
+/// vertices at the same position stay apart. Between two sources a distance goes along edges where the one's
+/// part meets the other's, and is then too long there by as much as edges are.
+std::vector<double> geodesicDistances(std::span<const Vec3> positions,
+                                      std::span<const std::array<std::uint32_t, 3>> triangles,
+                                      std::span<const std::uint32_t> sources,
+                                      double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace coif

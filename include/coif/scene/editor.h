@@ -17,6 +17,9 @@
 #include "coif/scene/selection.h"
 
 namespace coif {
+namespace editor {
+class AttemptCache;
+}
 
 /// What a command would leave: made by prepare(), taken over by commit().
 struct PreparedCommand;
@@ -47,7 +50,7 @@ class Editor {
   const EditState& state() const { return state_; }
 
   /// The head for commands that look at it (push_out); may be null, must outlive the editor.
-  void setHead(const Surface* head) { head_ = head; }
+  void setHead(const Surface* head);
 
   /// Runs a command. Errors: NotFound (no such command), InvalidArgument (an argument that is unknown, of
   /// the wrong kind or out of range; nothing suitable selected), and those of the operation. On an error
@@ -90,7 +93,9 @@ class Editor {
     bool meshChanged = false;
     std::shared_ptr<const EditState> before, after;  // shared between neighbouring steps where equal
   };
-  struct PlacerCache;
+  /// prepare() without the line of Python, which attempts do not need.
+  Result<PreparedCommand> outcomeOf(std::string_view command, const CommandArguments& arguments,
+                                    const Context& context) const;
   void record(const PreparedCommand& outcome);
   Status undo();
   Status redo();
@@ -103,7 +108,7 @@ class Editor {
   std::vector<Step> steps_;
   std::size_t done_ = 0, savedAt_ = 0;
   std::uint64_t revision_ = 0;
-  std::unique_ptr<PlacerCache> placer_;  // while only vertices move, the matrix is factored once
+  std::unique_ptr<editor::AttemptCache> cache_;
 };
 
 struct PreparedCommand {

@@ -34,8 +34,8 @@ const std::vector<Command>& commands() {
     std::vector<Command> list;
     list.push_back({{"undo", "Undo", "Edit", "Ctrl+Z", "Takes the last step back."}, {}});
     list.push_back({{"redo", "Redo", "Edit", "Ctrl+Shift+Z", "Does the step taken back again."}, {}});
-    for (auto part : {selectCommands, meshCommands, moveCommands, brushCommands, settingCommands, motionCommands,
-                      fileCommands}) {
+    for (auto part : {selectCommands, meshCommands, moveCommands, brushCommands, settingCommands,
+                      motionCommands, fileCommands}) {
       for (Command& command : part()) list.push_back(std::move(command));
     }
     return list;

@@ -10,6 +10,7 @@
 #include "coif/hairmesh/edit.h"
 #include "coif/hairmesh/operations.h"
 #include "coif/scene/editor.h"
+#include "scene/editor/attempt_cache.h"
 
 namespace coif::editor {
 
@@ -31,18 +32,22 @@ class Arguments {
   CommandArguments values_;
 };
 
+/// The mirror plane's partners while symmetric editing is on; null otherwise.
+Result<std::unique_ptr<Mirror>> mirrorOf(const HairMesh& mesh, const EditState& state);
+
 /// A copy of the document that a command may change; the editor takes it over when the command succeeds.
 struct Work {
   HairMesh mesh;
   EditState state;
   const Surface* head = nullptr;
   const Context& context;
+  AttemptCache& cache;
+  std::uint64_t revision = 0;  ///< of the document that `mesh` was copied from
   double metersPerUnit = 0.01;
   UpAxis upAxis = UpAxis::Y;
 
   Selection& selection() { return state.selection; }
-  /// The mirror plane's partners while symmetric editing is on; null otherwise.
-  Result<std::unique_ptr<Mirror>> mirror() const;
+  Result<std::unique_ptr<Mirror>> mirror() const { return mirrorOf(mesh, state); }
   /// Moves vertices by displacements (one a vertex): frozen ones stay, partners follow when symmetric,
   /// internal vertices among `asked` are pinned, since placement would take them back.
   Status displace(std::vector<Vec3> displacements, std::span<const std::uint32_t> asked);
@@ -82,7 +87,7 @@ inline Error refuse(std::string why) {
 void pushOut(HairMesh& mesh, const Surface& head, std::span<const std::uint32_t> vertices, double margin);
 /// The arguments of a soft selection, and its weights.
 std::vector<CommandArgument> softArguments();
-Result<VertexWeights> softWeights(const Work& work, std::span<const std::uint32_t> chosen,
+Result<VertexWeights> softWeights(Work& work, std::span<const std::uint32_t> chosen,
                                   const Arguments& arguments);
 Falloff falloffOf(const Arguments& arguments);
 CommandArgument falloffArgument();

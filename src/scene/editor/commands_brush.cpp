@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coif/hairmesh/brush.h"
 #include "scene/editor/command_table.h"
 
 namespace coif::editor {
@@ -37,15 +36,14 @@ Status brushStroke(Work& work, const Arguments& arguments) {
   stroke.falloff = falloffOf(arguments);
   stroke.through = arguments.vector("through");
   stroke.roots = arguments.flag("roots");
-  COIF_ASSIGN(const VertexWeights mask, brushMask(work, arguments.flag("selected")));
-  HairMesh moved = work.mesh;
-  COIF_TRY(brush(moved, stroke, mask));
+  COIF_ASSIGN(VertexWeights mask, brushMask(work, arguments.flag("selected")));
+  COIF_ASSIGN(HairMesh moved, work.cache.brush(work.revision, work.mesh, std::move(stroke), std::move(mask)));
   if (work.head != nullptr && arguments.flag("keep_out")) {
     std::vector<std::uint32_t> touched;
     for (std::uint32_t v = 0; v < moved.vertices().size(); ++v) {
       if (moved.position(v) != work.mesh.position(v)) touched.push_back(v);
     }
-    pushOut(moved, *work.head, touched, kKeptOutOfHead);
+    work.cache.pushOut(moved, *work.head, touched, kKeptOutOfHead);
   }
   return work.adoptMoves(moved, {});
 }

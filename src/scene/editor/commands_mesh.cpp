@@ -60,16 +60,36 @@ Result<std::optional<ExtrudePath>> pathOf(const Work& work, const Arguments& arg
   return plain ? std::nullopt : std::optional(path);
 }
 
+/// Tips on the side of the plane to which the curve leads follow it, the others its image.
+CurveSides sidesOf(const HairMesh& mesh, const Mirror& mirror, std::span<const BundleId> tips,
+                   const std::vector<Vec3>& curve) {
+  const auto height = [&](const Vec3& p) { return (p - mirror.point).dot(mirror.normal); };
+  CurveSides out{mirror.point, mirror.normal, {}};
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : curve) middle += p / double(curve.size());
+  for (BundleId id : tips) {
+    const std::uint32_t index = mesh.indexOf(id), partner = mirror.bundlePartner[index];
+    double side = 0;
+    for (std::uint32_t v : mesh.bundles()[index].face(mesh.bundles()[index].height()))
+      side += height(mesh.position(v));
+    out.of.push_back(partner == index                     ? CurveSides::Both
+                     : partner == kNone                   ? CurveSides::Curve
+                     : (side > 0) == (height(middle) > 0) ? CurveSides::Curve
+                                                          : CurveSides::Image);
+  }
+  return out;
+}
+
 Status extrude(Work& work, const Arguments& arguments) {
   COIF_ASSIGN(const auto tips, tipsOf(work, "extruded"));
   COIF_ASSIGN(const auto path, pathOf(work, arguments));
   if (path) {
     if (path->layers * tips.size() > kMostNewFaces)
       return refuse("that would make more than a million faces");
+    ExtrudePath both = *path;
     COIF_ASSIGN(const std::unique_ptr<Mirror> mirror, work.mirror());
-    if (mirror && !path->curve.empty())
-      return refuse("a curve is followed on one side only: turn symmetry off, and make symmetric afterwards");
-    COIF_ASSIGN(const Created created, extrudeAlong(work.mesh, tips, *path));
+    if (mirror && !both.curve.empty()) both.sides = sidesOf(work.mesh, *mirror, tips, both.curve);
+    COIF_ASSIGN(const Created created, extrudeAlong(work.mesh, tips, both));
     selectCreated(work, created);
     return {};
   }

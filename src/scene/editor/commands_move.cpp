@@ -146,10 +146,10 @@ Falloff falloffOf(const Arguments& arguments) {
   return Falloff(std::ranges::find(choices, arguments.text("falloff")) - choices.begin());
 }
 
-Result<VertexWeights> softWeights(const Work& work, std::span<const std::uint32_t> chosen,
+Result<VertexWeights> softWeights(Work& work, std::span<const std::uint32_t> chosen,
                                   const Arguments& arguments) {
-  return softSelection(work.mesh, chosen, arguments.number("radius"), falloffOf(arguments),
-                       arguments.text("metric") == "surface" ? SoftDistance::Surface : SoftDistance::Space);
+  return work.cache.soft(work.revision, work.mesh, chosen, arguments.number("radius"), falloffOf(arguments),
+                         arguments.text("metric") == "surface" ? SoftDistance::Surface : SoftDistance::Space);
 }
 
 std::vector<Command> moveCommands() {
@@ -176,11 +176,16 @@ std::vector<Command> moveCommands() {
          });
        }},
       {{"scale", "Scale", "Move", "S", "Scales the selection.",
-        soft({vector("factors", Vec3::Ones(), "Along x, y and z."), aboutPivot, pivot})},
-       [](Work& work, const Arguments& arguments) {
+        soft({vector("factors", Vec3::Ones(), "Along x, y and z, or along the axes."), aboutPivot, pivot,
+              numbers("axes", "Three unit vectors at right angles, nine numbers; none: x, y and z.")})},
+       [](Work& work, const Arguments& arguments) -> Status {
          const Vec3 about = pivotOf(work, arguments);
+         COIF_ASSIGN(const auto given, pointsOf(arguments.numbers("axes"), "axes"));
+         if (!given.empty() && given.size() != 3) return refuse("axes must hold nine numbers");
+         Mat3 axes = Mat3::Identity();
+         for (std::size_t i = 0; i < given.size(); ++i) axes.col(Eigen::Index(i)) = given[i];
          return moveBy(work, arguments, [&](HairMesh& mesh, const VertexWeights& weights) {
-           return scale(mesh, weights, about, arguments.vector("factors"));
+           return scale(mesh, weights, about, arguments.vector("factors"), axes);
          });
        }},
       {{"smooth", "Smooth", "Move", "Shift+R", "Relaxes the selection within its layers.",

@@ -68,8 +68,7 @@ Status setSymmetry(Work& work, const Arguments& arguments) {
   for (const auto& [point, normal] : planes) {
     EditState trial = state;
     trial.mirrorPoint = point, trial.mirrorNormal = normal;
-    COIF_ASSIGN(const std::unique_ptr<Mirror> found,
-                (Work{work.mesh, trial, nullptr, work.context}.mirror()));
+    COIF_ASSIGN(const std::unique_ptr<Mirror> found, mirrorOf(work.mesh, trial));
     const auto partners =
         std::size_t(std::ranges::count_if(found->vertexPartner, [](auto p) { return p != kNone; }));
     if (partners > best) best = partners, state = trial;

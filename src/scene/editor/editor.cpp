@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
-#include "coif/place/place.h"
 #include "scene/dynamics_json.h"
 #include "scene/editor/command_table.h"
 
@@ -32,59 +30,50 @@ bool sameTopology(const HairMesh& a, const HairMesh& b) {
 
 }  // namespace
 
-struct Editor::PlacerCache {
-  std::mutex mutex;
-  std::shared_ptr<const Placer> placer;
-
-  Status place(HairMesh& mesh, const Context& context) {
-    std::shared_ptr<const Placer> own;
-    {
-      const std::scoped_lock lock(mutex);
-      own = placer;
-    }
-    if (!own || !own->fits(mesh)) {
-      COIF_ASSIGN(Placer made, Placer::create(mesh, {}, context));
-      own = std::make_shared<const Placer>(std::move(made));
-      const std::scoped_lock lock(mutex);
-      placer = own;
-    }
-    COIF_ASSIGN(const PlaceReport placed, own->place(mesh, context));
-    (void)placed;
-    return {};
-  }
-};
-
-Editor::Editor(Scene scene) : scene_(std::move(scene)), placer_(std::make_unique<PlacerCache>()) {
+Editor::Editor(Scene scene) : scene_(std::move(scene)), cache_(std::make_unique<editor::AttemptCache>()) {
   state_.strands = scene_.strands;
   state_.look = scene_.look;
   state_.dynamics = scene_.dynamics;
 }
+void Editor::setHead(const Surface* head) {
+  head_ = head;
+  cache_->forgetHead();
+}
+
 Editor::~Editor() = default;
 Editor::Editor(Editor&&) noexcept = default;
 Editor& Editor::operator=(Editor&&) noexcept = default;
 
-Result<PreparedCommand> Editor::prepare(std::string_view name, const CommandArguments& given,
-                                        const Context& context) const {
+Result<PreparedCommand> Editor::outcomeOf(std::string_view name, const CommandArguments& given,
+                                          const Context& context) const {
   const editor::Command* command = editor::find(name);
   if (command == nullptr || !command->run) {
     return makeError(ErrorCode::NotFound, "there is no command '" + std::string(name) + "'");
   }
   COIF_ASSIGN(const editor::Arguments arguments, editor::complete(*command, given));
-  editor::Work work{scene_.hairMesh, state_, head_, context, scene_.metersPerUnit, scene_.upAxis};
+  editor::Work work{scene_.hairMesh,      state_,       head_, context, *cache_, revision_,
+                    scene_.metersPerUnit, scene_.upAxis};
   COIF_TRY(command->run(work, arguments));
-  PreparedCommand outcome{command->info.label,  pythonLine(name, given), revision_,
-                          std::move(work.mesh), std::move(work.state),   false};
+  PreparedCommand outcome{command->info.label,   {},   revision_, std::move(work.mesh),
+                          std::move(work.state), false};
   outcome.meshChanged = !(outcome.mesh == scene_.hairMesh);
-  if (outcome.meshChanged) COIF_TRY(placer_->place(outcome.mesh, context));
+  if (outcome.meshChanged) COIF_TRY(cache_->place(outcome.mesh, context));
   const bool sameElements = outcome.state.selection == state_.selection &&
                             (!outcome.meshChanged || sameTopology(outcome.mesh, scene_.hairMesh));
   if (!sameElements) dropMissing(outcome.mesh, outcome.state);
   return outcome;
 }
 
+Result<PreparedCommand> Editor::prepare(std::string_view name, const CommandArguments& given,
+                                        const Context& context) const {
+  COIF_ASSIGN(PreparedCommand outcome, outcomeOf(name, given, context));
+  outcome.python = pythonLine(name, given);
+  return outcome;
+}
+
 Result<HairMesh> Editor::attempt(std::string_view command, const CommandArguments& arguments,
                                  const Context& context) const {
-  COIF_ASSIGN(PreparedCommand outcome, prepare(command, arguments, context));
+  COIF_ASSIGN(PreparedCommand outcome, outcomeOf(command, arguments, context));
   return std::move(outcome.mesh);
 }
 
@@ -218,7 +207,7 @@ std::vector<std::byte> Editor::canonicalState() const {
 
 namespace editor {
 
-Result<std::unique_ptr<Mirror>> Work::mirror() const {
+Result<std::unique_ptr<Mirror>> mirrorOf(const HairMesh& mesh, const EditState& state) {
   if (!state.symmetric) return std::unique_ptr<Mirror>();
   double size = 0;
   for (const HairVertex& v : mesh.vertices()) size = std::max(size, (v.position - state.mirrorPoint).norm());
