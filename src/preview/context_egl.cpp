@@ -64,16 +64,22 @@ bool EglContext::open(void* display, std::string& why) {
       !epoxy_has_egl_extension(display, "EGL_KHR_no_config_context") || !eglBindAPI(EGL_OPENGL_API)) {
     return why = "EGL cannot make an OpenGL context without a surface", false;
   }
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                               4,
-                               EGL_CONTEXT_MINOR_VERSION,
-                               5,
-                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                               EGL_CONTEXT_OPENGL_DEBUG,
-                               EGL_TRUE,
-                               EGL_NONE};
-  context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  // A driver that is reset says so (makeCurrent looks); one that cannot is taken as it is.
+  for (const EGLint strategy : {EGL_LOSE_CONTEXT_ON_RESET, EGL_NO_RESET_NOTIFICATION}) {
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 EGL_TRUE,
+                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                 strategy,
+                                 EGL_NONE};
+    context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (context_ != EGL_NO_CONTEXT) break;
+  }
   if (context_ == EGL_NO_CONTEXT) return why = "the driver has no OpenGL 4.5 core", false;
   display_ = display;
   if (const Status status = makeCurrent(); !status.ok()) {
@@ -109,6 +115,8 @@ Status EglContext::makeCurrent() {
   if (!eglBindAPI(EGL_OPENGL_API) || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
     return makeError(ErrorCode::Unsupported, "the OpenGL context could not be made current on this thread");
   }
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+    return makeError(ErrorCode::Unsupported, "the graphics driver was reset");
   return {};
 }
 

@@ -12,6 +12,7 @@ struct WindowCanvas::Impl {
   Texture texture;
   int width = 0, height = 0;
   std::string renderer;
+  enum class Tells { Nothing, Core, Extension } tells = Tells::Nothing;
 };
 
 Result<WindowCanvas> WindowCanvas::create() {
@@ -22,6 +23,11 @@ Result<WindowCanvas> WindowCanvas::create() {
   }
   auto impl = std::make_unique<Impl>();
   if (const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER))) impl->renderer = name;
+  if (version >= 45) {
+    impl->tells = Impl::Tells::Core;
+  } else if (epoxy_has_gl_extension("GL_ARB_robustness")) {
+    impl->tells = Impl::Tells::Extension;
+  }
   return WindowCanvas(std::move(impl));
 }
 
@@ -76,6 +82,12 @@ Image WindowCanvas::read(int width, int height) const {
   }
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
   return image;
+}
+
+bool WindowCanvas::contextLost() const {
+  if (impl_->tells == Impl::Tells::Nothing) return false;
+  return (impl_->tells == Impl::Tells::Core ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusARB()) !=
+         GL_NO_ERROR;
 }
 
 const std::string& WindowCanvas::renderer() const {

@@ -29,6 +29,9 @@ class WindowCanvas {
   std::uint32_t texture() const;
   /// The window's framebuffer as it is drawn now.
   Image read(int width, int height) const;
+  /// Whether the driver has reset the context, so that all it held is gone. Never, where it was not asked to
+  /// tell (GL_LOSE_CONTEXT_ON_RESET) or cannot.
+  bool contextLost() const;
   const std::string& renderer() const;  ///< the driver's name for itself
 
  private:
