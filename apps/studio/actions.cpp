@@ -60,7 +60,7 @@ std::vector<Action> Studio::fileActions() {
        ask(PathUse::Turntable),
        {},
        noDocument},
-      {"quit", "Quit", "File", "Ctrl+Q", "Ends the studio.", [this] { quit_ = mayClose(); }},
+      {"quit", "Quit", "File", "Ctrl+Q", "Ends the studio.", [this] { mayClose(); }},
   };
 }
 

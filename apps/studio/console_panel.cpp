@@ -9,8 +9,6 @@
 namespace coif::studio {
 namespace {
 
-constexpr int kTyping = -1, kNextLine = -2;  // no line of before; the next one takes the keyboard
-
 /// Up and down bring back what was typed before.
 struct Recall {
   const std::vector<std::string>& lines;

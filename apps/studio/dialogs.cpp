@@ -39,7 +39,7 @@ std::vector<fs::path> entriesBeside(const std::string& text) {
 }  // namespace
 
 void Studio::askPath(PathUse use) {
-  pathUse_ = use;
+  pathUse_ = use, ++pathsAsked_;
   std::error_code error;
   const fs::path folder = document_ && !document_->path.empty() ? fs::absolute(document_->path).parent_path()
                                                                 : fs::current_path(error);
@@ -56,7 +56,7 @@ void Studio::askPath(PathUse use) {
 
 void Studio::usePath(const fs::path& path) {
   const PathUse use = std::exchange(pathUse_, PathUse::None);
-  if (use == PathUse::Open) return openPath(path, options_.style);
+  if (use == PathUse::Open) return leaveDocument([this, path] { openPath(path, options_.style); });
   if (use == PathUse::SaveAs) return saveTo(path);
   if (use == PathUse::Export) return exportTo(path);
   if (use == PathUse::Turntable) return beginTurntable(path);
@@ -89,7 +89,10 @@ void Studio::drawPathDialog() {
   if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoCollapse)) return;
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  ImGui::InputText("##path", &pathText_);
+  // A field of its own each time, all of it selected: one that is known keeps its cursor from the last time.
+  ImGui::PushID(pathsAsked_);
+  ImGui::InputText("##path", &pathText_, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopID();
   const bool enter = window_.keys().pressed("Enter");
   ImGui::BeginChild("entries", {0, 240 * window_.scale()}, true);
   std::error_code error;
@@ -154,25 +157,30 @@ void Studio::drawRecoveryDialog() {
 }
 
 void Studio::drawCloseDialog() {
-  if (!closeAsked_) return;
-  constexpr const char* kTitle = "Save before closing?";
+  if (!leaving_) return;
+  constexpr const char* kTitle = "Save first?";
   if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
   centred(380 * window_.scale());
   if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_NoResize)) return;
   ImGui::TextUnformatted("The document has changes that are not saved.");
-  const bool saves = ImGui::Button("Save");
+  const bool saves = ImGui::Button("Save") || window_.keys().pressed("Enter");
   ImGui::SameLine();
   const bool discards = ImGui::Button("Discard");
   ImGui::SameLine();
-  const bool stays = ImGui::Button("Cancel");
-  if (saves || discards || stays) closeAsked_ = false, ImGui::CloseCurrentPopup();
-  if (saves && document_->path.empty()) {
-    askPath(PathUse::SaveAs);
-  } else if (saves) {
-    saveTo(document_->path);
-    quit_ = !document_->editor.modified();
+  const bool stays = ImGui::Button("Cancel") || window_.keys().pressed("Escape");
+  if (saves || discards || stays) {
+    ImGui::CloseCurrentPopup();
+    const auto then = std::exchange(leaving_, nullptr);
+    if (saves && document_->path.empty()) {
+      askPath(PathUse::SaveAs);
+    } else if (saves) {
+      saveTo(document_->path);
+      if (!document_->editor.modified()) then();
+    } else if (discards) {
+      document_->forgetAutosave();
+      then();
+    }
   }
-  if (discards) document_->forgetAutosave(), quit_ = true;
   ImGui::EndPopup();
 }
 

@@ -1,6 +1,8 @@
 // What to export: format, what goes into the file, as what strands are shown.
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "coif/scene/evaluate.h"
 #include "studio.h"
 
@@ -37,6 +39,9 @@ void Studio::drawExportDialog() {
       exportFormat_ = i;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", kFormats[i].help);
   }
+  constexpr int kLast = int(std::size(kFormats)) - 1;
+  if (window_.keys().pressed("Down")) exportFormat_ = std::min(exportFormat_ + 1, kLast);
+  if (window_.keys().pressed("Up")) exportFormat_ = std::max(exportFormat_ - 1, 0);
   const Format& format = kFormats[exportFormat_];
   ImGui::Separator();
   ImGui::PushTextWrapPos(0);

@@ -38,8 +38,8 @@ bool inside(const std::vector<ImVec2>& outline, const ImVec2& at) {
 
 }  // namespace
 
-Gizmo::Gizmo(HandTool hand, const Vec3& pivot, const Viewport& view, float scale)
-    : hand_(hand), pivot_(pivot), view_(view), scale_(scale) {
+Gizmo::Gizmo(HandTool hand, const Vec3& pivot, const Mat3& axes, const Viewport& view)
+    : hand_(hand), pivot_(pivot), axes_(axes), view_(view), scale_(view.scale) {
   hand == HandTool::Rotate ? addRings() : addArms(hand == HandTool::Scale);
 }
 
@@ -47,8 +47,8 @@ void Gizmo::addArms(bool boxes) {
   const double arm = view_.unitsPerPixel(pivot_) * double(kArmPx * scale_);
   const auto at = [&](const Vec3& p) { return view_.toWindow(view_.project(p).px); };
   for (int i = 0; i < 3; ++i) {  // planes lie under the arrows
-    const Vec3 a = arm * Vec3::Unit((i + 1) % 3), b = arm * Vec3::Unit((i + 2) % 3);
-    if (std::abs(view_.forward()[i]) < 0.15) continue;  // seen from the edge
+    const Vec3 a = arm * axes_.col((i + 1) % 3), b = arm * axes_.col((i + 2) % 3);
+    if (std::abs(view_.forward().dot(axes_.col(i))) < 0.15) continue;  // seen from the edge
     std::vector<ImVec2> square;
     for (const auto& [s, t] :
          {std::pair(0.28, 0.28), std::pair(0.5, 0.28), std::pair(0.5, 0.5), std::pair(0.28, 0.5)})
@@ -56,9 +56,9 @@ void Gizmo::addArms(bool boxes) {
     handles_.push_back({{Constraint::Kind::Plane, i}, std::move(square), true, false, false, kAxisColors[i]});
   }
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(view_.forward()[i]) > 0.985) continue;  // points at the eye
+    if (std::abs(view_.forward().dot(axes_.col(i))) > 0.985) continue;  // points at the eye
     handles_.push_back({{Constraint::Kind::Axis, i},
-                        {at(pivot_ + 0.16 * arm * Vec3::Unit(i)), at(pivot_ + arm * Vec3::Unit(i))},
+                        {at(pivot_ + 0.16 * arm * axes_.col(i)), at(pivot_ + arm * axes_.col(i))},
                         false,
                         !boxes,
                         boxes,
@@ -92,7 +92,7 @@ void Gizmo::addRings() {
       {{}, circle(view_.right(), view_.up(), 1.15 * radius, false), false, false, false, kFreeColor});
   for (int i = 0; i < 3; ++i) {
     handles_.push_back({{Constraint::Kind::Axis, i},
-                        circle(Vec3::Unit((i + 1) % 3), Vec3::Unit((i + 2) % 3), radius, true),
+                        circle(axes_.col((i + 1) % 3), axes_.col((i + 2) % 3), radius, true),
                         false,
                         false,
                         false,

@@ -14,20 +14,21 @@ struct Constraint {
   enum class Kind { Free, Axis, Plane } kind = Kind::Free;
   int axis = 0;  ///< of a plane: its normal
   bool operator==(const Constraint&) const = default;
-  /// Keeps what of a vector the constraint allows.
-  Vec3 apply(Vec3 v) const {
+  /// Keeps what of a vector the constraint allows, along these axes (columns).
+  Vec3 apply(const Vec3& v, const Mat3& axes) const {
+    Vec3 along = axes.transpose() * v;
     for (int i = 0; i < 3; ++i) {
-      if (!allows(i)) v[i] = 0;
+      if (!allows(i)) along[i] = 0;
     }
-    return v;
+    return axes * along;
   }
   bool allows(int i) const { return kind == Kind::Free || (kind == Kind::Axis ? i == axis : i != axis); }
 };
 
 class Gizmo {
  public:
-  /// Of the hand tools Move, Rotate and Scale, about a point.
-  Gizmo(HandTool hand, const Vec3& pivot, const Viewport& view, float scale);
+  /// Of the hand tools Move, Rotate and Scale, about a point, along three axes (columns).
+  Gizmo(HandTool hand, const Vec3& pivot, const Mat3& axes, const Viewport& view);
 
   std::optional<Constraint> at(const Vec2& px) const;
   void draw(const std::optional<Constraint>& hot) const;
@@ -44,6 +45,7 @@ class Gizmo {
 
   HandTool hand_;
   Vec3 pivot_;
+  Mat3 axes_;
   const Viewport& view_;
   float scale_;
   std::vector<Handle> handles_;

@@ -156,6 +156,12 @@ std::optional<Vec3> Studio::selectionMiddle() const {
   return sum / double(chosen.size());
 }
 
+Gizmo Studio::gizmoAt(const Vec3& middle) const {
+  const HairMesh& mesh = document_->editor.mesh();
+  const auto chosen = selectedVertices(mesh, document_->editor.state().selection);
+  return {tools_.hand, middle, selectionAxes(mesh, chosen, tools_.axes), view_};
+}
+
 bool Studio::takeTools() {
   if (!document_ || !view_.screen()) return false;
   if (tool_) {
@@ -174,7 +180,7 @@ bool Studio::takeTools() {
     return false;
   }
   if (const auto middle = selectionMiddle(); middle && transforms(tools_.hand) && view_.hovered()) {
-    const auto handle = Gizmo(tools_.hand, *middle, view_, window_.scale()).at(view_.mouse());
+    const auto handle = gizmoAt(*middle).at(view_.mouse());
     if (handle && ImGui::IsMouseClicked(0)) {
       tool_ = std::make_unique<TransformTool>(tools_.hand, document_->editor, view_, tools_,
                                               document_->head.get(), *handle);
@@ -236,7 +242,7 @@ void Studio::drawOverView() {
   const bool free = !tool_ && view_.hovered() && !ImGui::IsAnyMouseDown();
   std::optional<Constraint> hot;
   if (const auto middle = tool_ ? std::nullopt : selectionMiddle(); middle && transforms(tools_.hand)) {
-    const Gizmo gizmo(tools_.hand, *middle, view_, window_.scale());
+    const Gizmo gizmo = gizmoAt(*middle);
     if (free) hot = gizmo.at(view_.mouse());
     gizmo.draw(hot);
   }

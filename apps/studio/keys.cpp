@@ -16,6 +16,8 @@ const std::map<std::string, int>& namedKeys() {
                                                    {"Tab", GLFW_KEY_TAB},
                                                    {"Escape", GLFW_KEY_ESCAPE},
                                                    {"Enter", GLFW_KEY_ENTER},
+                                                   {"Up", GLFW_KEY_UP},
+                                                   {"Down", GLFW_KEY_DOWN},
                                                    {"Space", GLFW_KEY_SPACE},
                                                    {"Delete", GLFW_KEY_DELETE},
                                                    {"Backspace", GLFW_KEY_BACKSPACE}};

@@ -83,13 +83,14 @@ LookSettings Studio::shownLook() const {
 
 void Studio::drawLookPanel() {
   LookSettings look = shownLook();
-  if (ImGui::CollapsingHeader("Hair colour")) {
+  if (header("Hair colour")) {
     bool changed = ImGui::ColorEdit3("colour", look.hairColor.data(), ImGuiColorEditFlags_Float);
     changed |= slide("roughness", look.longitudinalRoughness, 0.02f, 1);
     changed |= slide("around", look.azimuthalRoughness, 0.02f, 1);
     constexpr HairColor kReady[] = {HairColor::Black, HairColor::Brown, HairColor::Red,
                                     HairColor::Blond, HairColor::Grey,  HairColor::Dyed};
     int column = 0;
+    const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
     for (const HairColor ready : kReady) {
       if (column++ % 3 != 0) ImGui::SameLine();
       const Vec3 color = albedoFromAbsorption(absorptionOf(ready), look.azimuthalRoughness);
@@ -98,14 +99,13 @@ void Studio::drawLookPanel() {
       ImGui::PushStyleColor(ImGuiCol_Button, shown);
       const bool dark = color.mean() < 0.2;
       ImGui::PushStyleColor(ImGuiCol_Text, dark ? ImVec4(1, 1, 1, 1) : ImVec4(0, 0, 0, 1));
-      if (ImGui::Button(nameOf(ready), {86 * window_.scale(), 0}))
-        look.hairColor = color.cast<float>(), changed = true;
+      if (ImGui::Button(nameOf(ready), {third, 0})) look.hairColor = color.cast<float>(), changed = true;
       ImGui::PopStyleColor(2);
     }
     if (changed) pendingLook_ = look;
     settle("set_look", lookArguments(look), changed);
   }
-  if (ImGui::CollapsingHeader("Light")) {
+  if (header("Light")) {
     LightSettings& light = look.light;
     bool changed = lightBall(light, std::min(ImGui::GetContentRegionAvail().x, 150 * window_.scale()));
     ImGui::SameLine();

@@ -2,9 +2,18 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <iostream>
+#include <utility>
 
 #include "studio.h"
+
+namespace {
+
+/// With COIF_STUDIO_LOSABLE set, SIGUSR1 stands for a driver that was reset: for tests, where none ever is.
+volatile std::sig_atomic_t loseContext = 0;
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace coif::studio;
@@ -27,17 +36,18 @@ int main(int argc, char** argv) {
   app.add_option("--channel", options.channel, "A socket to the Python process that opens the studio")
       ->group("");
   CLI11_PARSE(app, argc, argv);
-  const Settings remembered = Settings::load();
-  int width = remembered.width, height = remembered.height;
-  if (size.empty()) size = std::to_string(width) + "x" + std::to_string(height);
-  if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || width < 200 || height < 100 ||
-      width > 16384 || height > 16384) {
-    std::cerr << "coif-studio: --size wants WIDTHxHEIGHT of at least 200x100, not '" << size << "'\n";
-    return 2;
+  Window::Place place = Settings::load().window;
+  if (!size.empty()) {
+    place.maximised = false;
+    if (std::sscanf(size.c_str(), "%dx%d", &place.width, &place.height) != 2 || place.width < 200 ||
+        place.height < 100 || place.width > 16384 || place.height > 16384) {
+      std::cerr << "coif-studio: --size wants WIDTHxHEIGHT of at least 200x100, not '" << size << "'\n";
+      return 2;
+    }
   }
   std::error_code ignored;
   std::filesystem::create_directories(stateFolder(), ignored);
-  auto window = Window::open(width, height, (stateFolder() / "layout.ini").string());
+  auto window = Window::open(place, (stateFolder() / "layout.ini").string());
   if (!window.ok()) {
     std::cerr << "coif-studio: " << window.error().text() << "\n";
     return 1;
@@ -47,9 +57,17 @@ int main(int argc, char** argv) {
     std::cout << studio.commandList() << "\n";
     return 0;
   }
-  (*window)->run([&] { return studio.frame(); }, [&] { return studio.mayClose(); });
-  if (const coif::Status traced = studio.finish(); !traced.ok()) {
-    std::cerr << "coif-studio: " << traced.error().text() << "\n";
+  const bool losable = std::getenv("COIF_STUDIO_LOSABLE") != nullptr;
+  if (losable) ::signal(SIGUSR1, [](int) { loseContext = 1; });
+  const coif::Status ran = (*window)->run({[&] {
+                                             if (std::exchange(loseContext, 0)) (*window)->loseContext();
+                                             return studio.frame();
+                                           },
+                                           [&] { return studio.mayClose(); }, [&] { studio.contextLost(); }});
+  const coif::Status kept = studio.finish();
+  for (const coif::Status& status : {ran, kept}) {
+    if (status.ok()) continue;
+    std::cerr << "coif-studio: " << status.error().text() << "\n";
     return 1;
   }
   return 0;

@@ -36,7 +36,7 @@ void Studio::drawRecentMenu() {
   if (!ImGui::BeginMenu("Recent", !settings_.recent.empty())) return;
   const std::vector<std::string> paths = settings_.recent;  // opening one changes the list
   for (const std::string& path : paths) {
-    if (ImGui::MenuItem(path.c_str())) openPath(path, options_.style);
+    if (ImGui::MenuItem(path.c_str())) leaveDocument([this, path] { openPath(path, options_.style); });
   }
   ImGui::EndMenu();
 }

@@ -36,7 +36,8 @@ ImU32 MeshPainter::colorOf(const FaceRef& face, float alpha, float light) const 
 }
 
 void MeshPainter::line(std::uint32_t a, std::uint32_t b, ImU32 color, float width) {
-  if (view_.screen()->pickable(a) && view_.screen()->pickable(b)) list_.AddLine(at(a), at(b), color, width);
+  if (view_.screen()->pickable(a) && view_.screen()->pickable(b))
+    list_.AddLine(at(a), at(b), color, width * view_.scale);
 }
 
 void MeshPainter::paint() {
@@ -84,7 +85,7 @@ void MeshPainter::paintShaded() {
     const float light = float(0.35 + 0.65 * std::abs(facing));
     list_.AddConvexPolyFilled(outline.data(), int(outline.size()), colorOf(item.face->face, 0.92f, light));
     list_.AddPolyline(outline.data(), int(outline.size()), IM_COL32(15, 15, 18, 130), ImDrawFlags_Closed,
-                      1.0f);
+                      view_.scale);
   }
 }
 
@@ -123,8 +124,8 @@ void MeshPainter::paintVertices() {
                         : vertex.pinned ? kPinned
                         : !external[v]  ? kInner
                                         : kVertex;
-    if (selected) list_.AddCircleFilled(at(v), 5.0f, IM_COL32(30, 20, 0, 255), 12);
-    list_.AddCircleFilled(at(v), selected ? 4.0f : 2.5f, color, 12);
+    if (selected) list_.AddCircleFilled(at(v), 5 * view_.scale, IM_COL32(30, 20, 0, 255), 12);
+    list_.AddCircleFilled(at(v), (selected ? 4.0f : 2.5f) * view_.scale, color, 12);
   }
 }
 
@@ -139,7 +140,7 @@ void MeshPainter::paintSelectedFaces() {
     }
     if (!seen) return;
     list_.AddConvexPolyFilled(outline.data(), int(outline.size()), color);
-    list_.AddPolyline(outline.data(), int(outline.size()), kSelected, ImDrawFlags_Closed, 1.5f);
+    list_.AddPolyline(outline.data(), int(outline.size()), kSelected, ImDrawFlags_Closed, 1.5f * view_.scale);
   };
   for (const FaceRef& face : state_.selection.faces) {
     fill(mesh_.bundles()[mesh_.indexOf(face.bundle)].face(face.layer), kSelectedFill);
@@ -153,16 +154,17 @@ void MeshPainter::paintSelectedFaces() {
 }
 
 void MeshPainter::paintHover(const Selection& under) {
-  for (VertexId id : under.vertices) list_.AddCircle(at(mesh_.indexOf(id)), 7, kHover, 0, 2);
+  for (VertexId id : under.vertices)
+    list_.AddCircle(at(mesh_.indexOf(id)), 7 * view_.scale, kHover, 0, 2 * view_.scale);
   for (const EdgeRef& edge : under.edges) {
     const auto ends = selectedVertices(mesh_, {{}, {edge}, {}});
-    list_.AddLine(at(ends[0]), at(ends[1]), kHover, 3);
+    list_.AddLine(at(ends[0]), at(ends[1]), kHover, 3 * view_.scale);
   }
   const auto has = [&](FaceRef face) { return std::ranges::binary_search(under.faces, face); };
   const auto outlineOf = [&](std::span<const std::uint32_t> corners) {
     std::vector<ImVec2> outline;
     for (std::uint32_t v : corners) outline.push_back(at(v));
-    list_.AddPolyline(outline.data(), int(outline.size()), kHover, ImDrawFlags_Closed, 2.0f);
+    list_.AddPolyline(outline.data(), int(outline.size()), kHover, ImDrawFlags_Closed, 2 * view_.scale);
   };
   for (const FaceRef& face : under.faces) {
     const Bundle& bundle = mesh_.bundles()[mesh_.indexOf(face.bundle)];
@@ -186,14 +188,14 @@ void MeshPainter::paintChanges(const HairMesh& before) {
       for (std::uint32_t v : face) outline.push_back(at(v));
       if (layer == bundle.height())
         list_.AddConvexPolyFilled(outline.data(), int(outline.size()), kAddedFill);
-      list_.AddPolyline(outline.data(), int(outline.size()), kAdded, ImDrawFlags_Closed, 1.5f);
+      list_.AddPolyline(outline.data(), int(outline.size()), kAdded, ImDrawFlags_Closed, 1.5f * view_.scale);
     }
   }
   for (std::uint32_t v = 0; v < mesh_.vertices().size(); ++v) {
     if (!isNew(v)) continue;
     if (mesh_.vertices()[v].parent != kNone)
-      list_.AddLine(at(mesh_.vertices()[v].parent), at(v), kAdded, 1.5f);
-    list_.AddCircleFilled(at(v), 3, kAdded, 12);
+      list_.AddLine(at(mesh_.vertices()[v].parent), at(v), kAdded, 1.5f * view_.scale);
+    list_.AddCircleFilled(at(v), 3 * view_.scale, kAdded, 12);
   }
   for (const Bundle& bundle : before.bundles()) {
     const std::uint32_t now = mesh_.indexOf(bundle.id);
@@ -205,7 +207,7 @@ void MeshPainter::paintChanges(const HairMesh& before) {
         const std::uint32_t a = face[i], b = face[(i + 1) % bundle.corners];
         if (!lost && !gone(a) && !gone(b)) continue;
         list_.AddLine(view_.toWindow(view_.project(before.position(a)).px),
-                      view_.toWindow(view_.project(before.position(b)).px), kTaken, 2.0f);
+                      view_.toWindow(view_.project(before.position(b)).px), kTaken, 2 * view_.scale);
       }
     }
   }

@@ -2,17 +2,24 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "studio.h"
 
 namespace coif::studio {
+namespace {
+
+constexpr float kLeastPanel = 180, kLeastView = 170;  // at a scale of 1
+
+}  // namespace
 
 void Studio::drawPanels() {
   const ImGuiViewport* all = ImGui::GetMainViewport();
   const float scale = window_.scale(), line = ImGui::GetFrameHeightWithSpacing();
-  const float left = float(leftPanelPx_) * scale, right = float(rightPanelPx_) * scale;
+  const float left = settings_.leftPanel * scale, right = settings_.rightPanel * scale;
   const ImVec2 at = all->WorkPos, size = all->WorkSize;
   // In a small window the view comes first.
-  const bool roomy = size.x > left + right + 160 * scale;
+  const bool roomy = size.x > left + right + (kLeastView - 10) * scale;
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                       ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
                                       ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -24,6 +31,7 @@ void Studio::drawPanels() {
     ImGui::Begin("tools", nullptr, kFixed);
     drawToolPanel();
     ImGui::End();
+    dragEdge("tools edge", {at.x + left, at.y}, height, settings_.leftPanel, 1, size.x - right);
     ImGui::SetNextWindowPos({at.x + size.x - right, at.y});
     ImGui::SetNextWindowSize({right, height});
     ImGui::Begin("settings", nullptr, kFixed);
@@ -40,6 +48,7 @@ void Studio::drawPanels() {
       ImGui::TextWrapped("Drop a head or a .coif document here, or press Ctrl+O.");
     }
     ImGui::End();
+    dragEdge("settings edge", {at.x + size.x - right, at.y}, height, settings_.rightPanel, -1, size.x - left);
   }
   ImGui::SetNextWindowPos({at.x, at.y + size.y - line});
   ImGui::SetNextWindowSize({size.x, line});
@@ -49,7 +58,38 @@ void Studio::drawPanels() {
   drawStatusLine();
   ImGui::End();
   ImGui::PopStyleVar(2);
+  view_.scale = scale;
   view_.place({at.x + (roomy ? left : 0), at.y}, {size.x - (roomy ? left + right : 0), height});
+}
+
+/// A panel's edge towards the view, which changes its width; `sign`: to which side it grows.
+void Studio::dragEdge(const char* name, const ImVec2& at, float height, float& width, float sign,
+                      float room) {
+  const float scale = window_.scale(), thick = 6 * scale;
+  ImGui::SetNextWindowPos({at.x - 0.5f * thick, at.y});
+  ImGui::SetNextWindowSize({thick, height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  ImGui::InvisibleButton("edge", {thick, height});
+  const bool held = ImGui::IsItemActive();
+  if (held || ImGui::IsItemHovered()) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    ImGui::GetForegroundDrawList()->AddLine({at.x, at.y}, {at.x, at.y + height},
+                                            ImGui::GetColorU32(ImGuiCol_SeparatorHovered), 2 * scale);
+  }
+  // By where the mouse is, not by how far it went: at its limits the edge waits for the mouse.
+  if (held) {
+    const float wanted = width + sign * (ImGui::GetIO().MousePos.x - at.x) / scale;
+    width = std::clamp(wanted, kLeastPanel, std::max(room / scale - kLeastView, kLeastPanel));
+  }
+  if (ImGui::IsItemDeactivated()) (void)settings_.save();
+  ImGui::End();
+  ImGui::PopStyleVar(3);
 }
 
 bool Studio::header(const char* label) {

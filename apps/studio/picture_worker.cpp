@@ -105,11 +105,15 @@ PictureAnswer PictureWorker::answer(const PictureRequest& request) {
   const Stopwatch watch;
   PictureAnswer out;
   out.camera = request.camera;
-  if (const Status status = show(request, out); !status.ok()) {
-    out.problem = status.error().text();
-    // A driver that fails, or a context that is lost, is left for a new one: all that it showed is kept here.
-    if (status.error().code == ErrorCode::Unsupported) forgetPreview();
-  }
+  const auto failed = [](const Status& s) { return !s.ok() && s.error().code == ErrorCode::Unsupported; };
+  if (lost_.exchange(false)) forgetPreview();
+  // A driver that fails, or a context that is lost, is left for a new one: all that it showed is kept here.
+  const bool had = preview_.has_value();
+  Status status = show(request, out);
+  if (failed(status)) forgetPreview();
+  if (failed(status) && had) status = show(request, out);
+  if (failed(status)) forgetPreview();
+  if (!status.ok()) out.problem = status.error().text();
   out.seconds = watch.seconds();
   return out;
 }

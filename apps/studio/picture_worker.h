@@ -47,6 +47,8 @@ class PictureWorker {
   /// The newest answer since the last call.
   std::optional<PictureAnswer> take();
   bool busy() const { return busy_; }
+  /// All that was on the GPU is gone: the next picture begins with nothing.
+  void loseContext() { lost_ = true; }
 
  private:
   void loop();
@@ -63,7 +65,7 @@ class PictureWorker {
   std::condition_variable wake_;
   std::optional<PictureRequest> wanted_;
   std::optional<PictureAnswer> done_;
-  std::atomic<bool> stop_{false}, cancel_{false}, busy_{false};
+  std::atomic<bool> stop_{false}, cancel_{false}, busy_{false}, lost_{false};
   bool draftRuns_ = false;
 
   // The worker's own; only its thread touches them.

@@ -60,6 +60,7 @@ std::vector<Action> Studio::pythonActions() {
       {"console", "Python console", "Python", "F4", "Shows or hides the console.",
        [this] {
          settings_.console = !settings_.console;
+         if (settings_.console) typedAt_ = kNextLine;
          (void)settings_.save();
        },
        [this] { return settings_.console; }},

@@ -40,9 +40,9 @@ Selection under(const Viewport& view, const HairMesh& mesh) {
   Selection found;
   const SelectKind kind = view.settings.kind;
   if (kind == SelectKind::Vertex) {
-    if (const auto id = view.screen()->vertexAt(view.mouse(), kVertexPx)) found.vertices = {*id};
+    if (const auto id = view.screen()->vertexAt(view.mouse(), kVertexPx * view.scale)) found.vertices = {*id};
   } else if (kind == SelectKind::Edge) {
-    if (const auto edge = view.screen()->edgeAt(view.mouse(), kEdgePx)) found.edges = {*edge};
+    if (const auto edge = view.screen()->edgeAt(view.mouse(), kEdgePx * view.scale)) found.edges = {*edge};
   } else if (const auto face = view.screen()->faceAt(view.mouse(), kind != SelectKind::Face)) {
     found.faces = {*face};
   }
@@ -61,7 +61,7 @@ std::vector<Wish> SelectTool::update(const Viewport& view, const HairMesh& mesh)
     path_ = {view.mouse()};
   }
   if (!active_) return {};
-  const bool moved = (view.mouse() - path_.front()).norm() > kClickPx;
+  const bool moved = (view.mouse() - path_.front()).norm() > kClickPx * view.scale;
   if (moved || path_.size() > 1) {
     if (lasso_ && (view.mouse() - path_.back()).norm() > 2) path_.push_back(view.mouse());
     if (!lasso_) {
@@ -92,7 +92,7 @@ std::vector<Wish> SelectTool::finish(const Viewport& view, const HairMesh& mesh)
 }
 
 std::vector<Wish> SelectTool::along(const Viewport& view, const HairMesh& mesh, bool ring) const {
-  const auto edge = view.screen()->edgeAt(view.mouse(), 3 * kEdgePx);
+  const auto edge = view.screen()->edgeAt(view.mouse(), 3 * kEdgePx * view.scale);
   if (!edge) return {};
   const Selection found{{}, ring ? edgeRing(mesh, *edge) : edgeLoop(mesh, *edge), {}};
   return {{"select", selectArguments(found, "set")}};

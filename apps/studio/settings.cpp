@@ -60,10 +60,16 @@ Settings Settings::load() {
     out.mayaMouse = json.value("mayaMouse", false);
     out.console = json.value("console", false);
     out.open = json.value("open", out.open);
-    out.width = std::clamp(json.value("width", out.width), 200, 16384);
-    out.height = std::clamp(json.value("height", out.height), 100, 16384);
+    Window::Place& at = out.window;
+    at.width = std::clamp(json.value("width", at.width), 200, 16384);
+    at.height = std::clamp(json.value("height", at.height), 100, 16384);
+    at.x = std::clamp(json.value("x", at.x), -1, 16384);
+    at.y = std::clamp(json.value("y", at.y), -1, 16384);
+    at.maximised = json.value("maximised", false);
     out.tourSeen = json.value("tourSeen", false);
     out.consoleHeight = std::clamp(json.value("consoleHeight", out.consoleHeight), 60.0f, 2000.0f);
+    out.leftPanel = std::clamp(json.value("leftPanel", out.leftPanel), 180.0f, 2000.0f);
+    out.rightPanel = std::clamp(json.value("rightPanel", out.rightPanel), 180.0f, 2000.0f);
   } catch (const nlohmann::json::exception&) {
     return {};
   }
@@ -80,8 +86,13 @@ Status Settings::save() const {
                             {"mayaMouse", mayaMouse},
                             {"console", console},
                             {"open", open},
-                            {"width", width},
-                            {"height", height},
+                            {"width", window.width},
+                            {"height", window.height},
+                            {"x", window.x},
+                            {"y", window.y},
+                            {"maximised", window.maximised},
+                            {"leftPanel", leftPanel},
+                            {"rightPanel", rightPanel},
                             {"tourSeen", tourSeen},
                             {"consoleHeight", consoleHeight}}
                  .dump(2));

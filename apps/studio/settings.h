@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coif/base/result.h"
+#include "window.h"
 
 namespace coif::studio {
 
@@ -14,9 +15,9 @@ struct Settings {
   std::vector<std::string> recent;          ///< newest first, at most ten
   std::map<std::string, std::string> keys;  ///< command → key, where it is not the default
   bool lightTheme = false, mayaMouse = false, console = false, tourSeen = false;
-  int width = 1280, height = 800;         ///< of the window, pixels
-  std::map<std::string, bool> open = {};  ///< which panels are
-  float consoleHeight = 170;              ///< at a scale of 1
+  Window::Place window;
+  std::map<std::string, bool> open = {};                         ///< which panels are
+  float consoleHeight = 170, leftPanel = 190, rightPanel = 300;  ///< at a scale of 1
 
   static Settings load();  ///< defaults where there is none or it cannot be understood
   Status save() const;

@@ -50,10 +50,18 @@ Studio::~Studio() {
 }
 
 Status Studio::finish() {
-  const auto [width, height] = window_.size();
-  if (width >= 200 && height >= 100) settings_.width = width, settings_.height = height;
-  (void)settings_.save();  // a folder that cannot be written only forgets the window's size
+  settings_.window = window_.place();
+  (void)settings_.save();  // a folder that cannot be written only forgets the layout
   return trace_.write();
+}
+
+void Studio::contextLost() {
+  pictures_->loseContext();
+  askedKey_ = 0;
+  say("the graphics driver was reset: the window was made anew, and nothing of the document is lost");
+  if (!document_) return;
+  if (const Status status = document_->autosave(); !status.ok())
+    say("autosave: " + status.error().text(), true);
 }
 
 void Studio::say(std::string message, bool problem) {
@@ -167,6 +175,7 @@ void Studio::saveTo(const std::filesystem::path& path) {
   if (const Status status = document_->save(path); !status.ok()) return say(status.error().text(), true);
   settings_.addRecent(path);
   (void)settings_.save();
+  lastAutosave_ = 0;  // the next change is a first one again
   say("saved " + path.string());
 }
 
@@ -197,13 +206,18 @@ void Studio::autosave() {
     say("autosave: " + status.error().text(), true);
 }
 
-bool Studio::mayClose() {
+void Studio::leaveDocument(std::function<void()> then) {
   if (document_ && document_->editor.modified()) {
-    closeAsked_ = true;
-    return false;
+    leaving_ = std::move(then);
+    return;
   }
   if (document_) document_->forgetAutosave();
-  return true;
+  then();
+}
+
+bool Studio::mayClose() {
+  leaveDocument([this] { quit_ = true; });
+  return quit_;
 }
 
 PictureRequest Studio::pictureRequest(bool fine) const {
@@ -294,9 +308,11 @@ void Studio::takeKeys() {
 }
 
 bool Studio::frame() {
-  const Trace::Span span(trace_, "frame");
+  Trace::Span span(trace_, "frame");
+  span.note("drawn before", double(window_.framesDrawn()));
   job_.poll();
-  for (const std::string& path : window_.takeDropped()) openPath(path, options_.style);
+  if (const auto dropped = window_.takeDropped(); !dropped.empty())
+    leaveDocument([this, path = dropped.front()] { openPath(path, options_.style); });
   takePictures();
   takeMotion();
   takeScripts();

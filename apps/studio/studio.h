@@ -10,6 +10,7 @@
 #include "brush_tool.h"
 #include "console.h"
 #include "document.h"
+#include "gizmo.h"
 #include "job.h"
 #include "modal_tool.h"
 #include "motion_player.h"
@@ -44,6 +45,8 @@ class Studio {
   bool frame();
   /// Asks to save first where something changed; true when the window may close now.
   bool mayClose();
+  /// All that was on the GPU is gone, or will be: keeps the document, and asks for its picture anew.
+  void contextLost();
   /// Writes what is to be kept. Call once, at the end.
   Status finish();
   /// Every command and action with menu and key, as JSON.
@@ -59,6 +62,8 @@ class Studio {
   void openExample();
   void recover(const std::filesystem::path& autosave);
   void openPath(const std::filesystem::path& path, const std::string& style);
+  /// Does it now, or once the artist has said what becomes of changes that are not saved.
+  void leaveDocument(std::function<void()> then);
   void adopt(std::unique_ptr<Document> document);
   void saveTo(const std::filesystem::path& path);
   void exportTo(const std::filesystem::path& path);
@@ -76,6 +81,7 @@ class Studio {
   void followBrush();
   bool takeTools();  ///< true: this frame's keys were the tool's
   std::optional<Vec3> selectionMiddle() const;
+  Gizmo gizmoAt(const Vec3& middle) const;
   void drawUnderView();
   void drawOverView();
   bool turnTable();  ///< true while the model turns by itself
@@ -134,6 +140,7 @@ class Studio {
   void drawStagePanel();
   void drawPythonPanel();
   void drawStatusLine();
+  void dragEdge(const char* name, const ImVec2& at, float height, float& width, float sign, float room);
   bool header(const char* label);  ///< of a panel; open or not as in the last run
   void drawProgress();
 
@@ -190,7 +197,8 @@ class Studio {
   Console console_{&Window::wake};
   std::string typed_;
   std::vector<std::string> typedBefore_;
-  int typedAt_ = -1;
+  static constexpr int kTyping = -1, kNextLine = -2;  // no line of before; the next one takes the keyboard
+  int typedAt_ = kTyping;
   std::unique_ptr<Channel> channel_;  // to the process that opened the studio
   std::vector<Request> requests_;
   int restedFrames_ = 0;
@@ -220,11 +228,12 @@ class Studio {
   std::uint64_t askedKey_ = 0, loggedSteps_ = 0;
   bool fine_ = false;  // the shown picture is the fine one
   double lastChange_ = 0, lastAutosave_ = 0;
-  int leftPanelPx_ = 190, rightPanelPx_ = 300;
 
   PathUse pathUse_ = PathUse::None;
   std::string pathText_;
-  bool paletteOpen_ = false, closeAsked_ = false, quit_ = false, tourOpen_ = false;
+  int pathsAsked_ = 0;
+  bool paletteOpen_ = false, quit_ = false, tourOpen_ = false;
+  std::function<void()> leaving_;  // what waits for an answer; none: nothing
   std::string paletteText_, keyMapText_, keyAskedFor_, groupText_;
   bool keyMapOpen_ = false, exportOpen_ = false;
   int exportFormat_ = 0, tourStep_ = 0;

@@ -82,6 +82,11 @@ std::vector<Action> Studio::toolActions() {
                     radius = radius > 0 ? 0 : 5 * tools_.snap.step;
                   },
                   [this] { return tools_.soft.radius > 0; }});
+  list.push_back({"axes_next", "Next axes", "Tools", ",",
+                  "Handles, and X, Y and Z, go along the scene's axes, the hair, or its normal.", [this] {
+                    tools_.axes = AxesKind((int(tools_.axes) + 1) % 3);
+                    say(std::string("axes: ") + kAxesNames[int(tools_.axes)]);
+                  }});
   list.push_back({"snapping", "Snapping", "Tools", "Shift+Tab",
                   "Moves end on the grid, a vertex or the scalp.",
                   [this] { tools_.snap.on = !tools_.snap.on; }, [this] { return tools_.snap.on; }});
@@ -143,6 +148,10 @@ void Studio::drawHandSettings() {
     falloffCombo(tools_.soft.falloff);
     ImGui::Checkbox("Along the mesh", &tools_.soft.surface);
   }
+  heading("Axes");
+  ImGui::SetNextItemWidth(-1);
+  int axes = int(tools_.axes);
+  if (ImGui::Combo("##axes", &axes, kAxesNames, IM_ARRAYSIZE(kAxesNames))) tools_.axes = AxesKind(axes);
   heading("Snap");
   ImGui::Checkbox("##snap", &tools_.snap.on);
   ImGui::SameLine();

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "coif/hairmesh/edit.h"
 #include "coif/scene/command.h"
 
 namespace coif::studio {
@@ -25,6 +26,8 @@ struct SoftSettings {
   }
 };
 
+inline constexpr const char* kAxesNames[] = {"the scene's axes", "along the hair", "along the normal"};
+
 enum class SnapTo { Grid, Vertex, Scalp };
 struct SnapSettings {
   bool on = false;  ///< Ctrl turns it round while dragging
@@ -43,6 +46,7 @@ struct ToolSettings {
   HandTool hand = HandTool::Select;
   SoftSettings soft;
   SnapSettings snap;
+  AxesKind axes = AxesKind::World;  ///< of the gizmo, and of X, Y and Z while a tool runs
   BrushSettings brush;
   double paintRadiusPx = 24;
 };

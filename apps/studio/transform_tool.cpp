@@ -41,6 +41,7 @@ TransformTool::TransformTool(HandTool hand, const Editor& editor, const Viewport
     pivot_ += editor.mesh().position(v) / double(chosen.size());
     own_.push_back(editor.mesh().vertices()[v].id);
   }
+  axes_ = selectionAxes(editor.mesh(), chosen, settings.axes);
 }
 
 void TransformTool::takeConstraint(const Keys& keys) {
@@ -73,16 +74,17 @@ void TransformTool::update(const Viewport& view, const Keys& keys) {
 
 Vec3 TransformTool::moveBy(const Viewport& view) {
   if (typed_.any()) {
-    if (constraint_.kind == Constraint::Kind::Axis) return typed_.number(0) * Vec3::Unit(constraint_.axis);
+    if (constraint_.kind == Constraint::Kind::Axis)
+      return typed_.number(0) * axes_.col(constraint_.axis) + Vec3::Zero();  // no −0
     Vec3 by = Vec3::Zero();
     for (std::size_t i = 0, next = 0; i < 3; ++i) {
       if (constraint_.allows(int(i))) by[Eigen::Index(i)] = typed_.number(next++);
     }
-    return by;
+    return axes_ * by + Vec3::Zero();
   }
   Vec3 by = Vec3::Zero();
   if (constraint_.kind == Constraint::Kind::Plane) {
-    const Vec3 normal = Vec3::Unit(constraint_.axis);
+    const Vec3 normal = axes_.col(constraint_.axis);
     const auto a = onPlane(view, start_, pivot_, normal), b = onPlane(view, mouse_, pivot_, normal);
     if (a && b) by = *b - *a;
   } else {
@@ -91,7 +93,7 @@ Vec3 TransformTool::moveBy(const Viewport& view) {
     by = unit * (d.x() * view.right() - d.y() * view.up());
     if (constraint_.kind == Constraint::Kind::Axis) {
       // Along an axis as it is seen: the mouse's part along the axis's own picture.
-      const Vec3 axis = Vec3::Unit(constraint_.axis);
+      const Vec3 axis = axes_.col(constraint_.axis);
       const Vec2 seen(axis.dot(view.right()), -axis.dot(view.up()));
       by = seen.squaredNorm() > 1e-4 ? Vec3(unit * d.dot(seen) / seen.squaredNorm() * axis)
                                      : Vec3(Vec3::Zero());
@@ -105,7 +107,7 @@ Vec3 TransformTool::snapped(const Viewport& view, const Vec3& by) {
   if (snap_.to == SnapTo::Grid) {
     for (int i = 0; i < 3; ++i) to[i] = rounded(to[i], snap_.step);
   } else if (snap_.to == SnapTo::Vertex) {
-    const auto found = view.screen()->vertexBeside(mouse_, kSnapPx, own_);
+    const auto found = view.screen()->vertexBeside(mouse_, kSnapPx * view.scale, own_);
     if (!found) return by;
     to = *found;
   } else {
@@ -115,12 +117,12 @@ Vec3 TransformTool::snapped(const Viewport& view, const Vec3& by) {
     to = hit.position;
   }
   snapMark_ = to;
-  return constraint_.apply(to - pivot_);
+  return constraint_.apply(to - pivot_, axes_);
 }
 
 Vec3 TransformTool::axisOf(const Viewport& view) const {
   return constraint_.kind == Constraint::Kind::Free ? Vec3(-view.forward())
-                                                    : Vec3(Vec3::Unit(constraint_.axis));
+                                                    : Vec3(axes_.col(constraint_.axis));
 }
 
 double TransformTool::turnDeg(const Viewport& view) const {
@@ -140,7 +142,7 @@ Vec3 TransformTool::factors(const Viewport& view) const {
     const Vec2 centre = view.project(pivot_).px;
     Vec2 a = start_ - centre, b = mouse_ - centre;
     if (held_ && constraint_.kind == Constraint::Kind::Axis) {
-      const Vec3 axis = Vec3::Unit(constraint_.axis);
+      const Vec3 axis = axes_.col(constraint_.axis);
       const Vec2 seen = Vec2(axis.dot(view.right()), -axis.dot(view.up())).normalized();
       factor = b.dot(seen) / std::max(std::abs(a.dot(seen)), 1.0);
     } else if (held_ && constraint_.kind == Constraint::Kind::Free) {
@@ -169,6 +171,8 @@ CommandArguments TransformTool::arguments() const {
     out["axis"] = axis_, out["angle"] = angleDeg_;
   } else {
     out["factors"] = factors_;
+    const bool even = constraint_.kind == Constraint::Kind::Free;
+    if (!even && axes_ != Mat3::Identity()) out["axes"] = std::vector<double>(axes_.data(), axes_.data() + 9);
   }
   soft_.addTo(out);
   return out;
@@ -191,6 +195,7 @@ std::string TransformTool::status() const {
   const char axis = "XYZ"[constraint_.axis];
   if (constraint_.kind == Constraint::Kind::Axis) text += std::string(" along ") + axis;
   if (constraint_.kind == Constraint::Kind::Plane) text += std::string(" without ") + axis;
+  if (axes_ != Mat3::Identity()) text += " (own axes)";
   if (typed_.any()) text += ": " + typed_.text();
   return text + "   (X Y Z: axis, Shift: plane, digits: exact, Ctrl: snap, wheel: soft radius, Esc: drop)";
 }
@@ -200,18 +205,18 @@ void TransformTool::draw(const Viewport& view) const {
   const double unit = view.unitsPerPixel(pivot_);
   const ImVec2 middle = view.toWindow(view.project(pivot_).px);
   if (soft_.radius > 0)
-    list.AddCircle(middle, float(soft_.radius / unit), IM_COL32(255, 255, 255, 140), 64, 1.5f);
+    list.AddCircle(middle, float(soft_.radius / unit), IM_COL32(255, 255, 255, 140), 64, 1.5f * view.scale);
   for (int i = 0; i < 3 && constraint_.kind != Constraint::Kind::Free; ++i) {
     if (!constraint_.allows(i)) continue;
     constexpr ImU32 kColors[] = {IM_COL32(235, 78, 84, 150), IM_COL32(120, 200, 70, 150),
                                  IM_COL32(74, 140, 245, 150)};
-    const Vec3 reach = 2000 * unit * Vec3::Unit(i);
+    const Vec3 reach = 2000 * unit * axes_.col(i);
     list.AddLine(view.toWindow(view.project(pivot_ - reach).px),
-                 view.toWindow(view.project(pivot_ + reach).px), kColors[i], 1.2f);
+                 view.toWindow(view.project(pivot_ + reach).px), kColors[i], 1.2f * view.scale);
   }
   if (snapMark_) {
     const ImVec2 at = view.toWindow(view.project(*snapMark_).px);
-    list.AddCircle(at, 7, IM_COL32(255, 225, 90, 255), 4, 2.5f);
+    list.AddCircle(at, 7 * view.scale, IM_COL32(255, 225, 90, 255), 4, 2.5f * view.scale);
   }
 }
 

@@ -35,6 +35,7 @@ class TransformTool : public ModalTool {
   bool held_;
   std::vector<VertexId> own_;  // ascending: no one snaps to itself
   Vec3 pivot_ = Vec3::Zero();
+  Mat3 axes_;  // columns
   Vec2 start_, mouse_;
   SoftSettings soft_;
   SnapSettings snap_;

@@ -86,9 +86,9 @@ Vec3 Viewport::ray(const Vec2& px) const {
 ScreenPoint Viewport::project(const Vec3& world) const {
   const Vec3 d = world - camera.eye;
   const double depth = d.dot(forward());
-  const double scale =
+  const double pixels =
       0.5 * height() / std::tan(0.5 * camera.fovDeg * std::numbers::pi / 180) / std::max(depth, 1e-300);
-  return {Vec2(0.5 * width() + scale * d.dot(right()), 0.5 * height() - scale * d.dot(up())), depth};
+  return {Vec2(0.5 * width() + pixels * d.dot(right()), 0.5 * height() - pixels * d.dot(up())), depth};
 }
 
 bool Viewport::navigate(bool zooms) {

@@ -37,6 +37,7 @@ class Viewport {
   ViewSettings settings;
   Camera camera;
   UpAxis upAxis = UpAxis::Y;
+  float scale = 1;  ///< of the display: what is drawn and grabbed is so much larger
 
   /// Places the view in the window, in pixels; call first in a frame.
   void place(const ImVec2& origin, const ImVec2& size);
