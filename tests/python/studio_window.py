@@ -19,6 +19,9 @@ PATIENCE = float(os.environ.get("COIF_STUDIO_PATIENCE", 60))  # seconds: softwar
 SIZE = (900, 600)
 LEFT, RIGHT, BAR = 190, 300, 19  # pixels: the panels beside the view and the menu bar above it
 STRANDS = 3000
+VIEW = np.s_[60:540, 200:590]  # of a picture of the screen
+# FLIP's mean between two pictures of one view of one document, above what their samples' sub-pixel offsets make.
+SAME_PICTURE = 0.02
 
 needs_window = pytest.mark.skipif(
     not (BIN / "coif-studio").exists() or not shutil.which("Xvfb") or not shutil.which("xdotool"),
@@ -56,18 +59,22 @@ def bob(tmp_path_factory):
     return folder / "bob.coif"
 
 
+def linear(pixels):
+    """Linear light of a picture of the screen, 0 … 255."""
+    return np.where(pixels <= 0.04045 * 255, pixels / 255 / 12.92, ((pixels / 255 + 0.055) / 1.055) ** 2.4)
+
+
 class Studio:
     def __init__(self, display, folder, *arguments, size="{}x{}".format(*SIZE)):
         self.folder, self.log = folder, folder / "log.py"
+        self.size = tuple(map(int, size.split("x")))
         self.environment = dict(os.environ, DISPLAY=display, XDG_STATE_HOME=str(folder / "state"))
         self.log.touch()
         self.process = subprocess.Popen(
             [BIN / "coif-studio", *map(str, arguments), "--size", size, "--python-log", self.log],
             env=self.environment, cwd=folder, stderr=subprocess.PIPE,
         )
-        # By process: the window of one that was killed may still stand for a moment.
-        search = ("search", "--all", "--onlyvisible", "--pid", self.process.pid, "--name", "Coif Studio")
-        self.window = self.wait(lambda: self.tool(*search), "a window")
+        self.find_window()
 
     def tool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, capture_output=True, text=True)
@@ -81,6 +88,7 @@ class Studio:
             if result := test():
                 return result
             time.sleep(0.05)
+        self.shot("failed-" + "".join(c if c.isalnum() else "-" for c in what)[:60])
         raise AssertionError(f"waited for {what}; the log is {self.lines()}")
 
     def title(self):
@@ -180,16 +188,50 @@ class Studio:
 
         out = pathlib.Path(os.environ.get("COIF_TEST_OUT", self.folder)) / "studio"
         out.mkdir(parents=True, exist_ok=True)
-        picture = ImageGrab.grab(bbox=(0, 0, *SIZE), xdisplay=self.environment["DISPLAY"])
+        picture = ImageGrab.grab(bbox=(0, 0, *self.size), xdisplay=self.environment["DISPLAY"])
         picture.save(out / f"{name}.png")
         return np.asarray(picture.convert("RGB"), float)
 
-    def saved(self):
+    def path(self, path, *keys):
+        """Presses the keys that ask for a path, and answers."""
+        self.key(*keys)
+        time.sleep(0.6)  # until the field has the keyboard: a person looks up too
+        self.key("ctrl+a")
+        self.type(str(path))
+        self.key("Return")
+        time.sleep(0.4)
+
+    def ticks(self):
+        """Processor time that the studio took, in the kernel's ticks of 10 ms."""
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ", 1)[1].split()
+        return int(fields[11]) + int(fields[12])
+
+    def rest(self):
+        """Waits until all is drawn: an idle window takes no time."""
+
+        def rested():
+            before = self.ticks()
+            time.sleep(0.7)
+            return self.ticks() - before <= 1
+
+        self.wait(rested, "the pictures to be done")
+
+    def settled(self, name):
+        """A picture of the screen once all of it is drawn."""
+        self.rest()
+        return self.shot(name)
+
+    def saved(self, name="bob.coif"):
         import coif
 
         self.key("ctrl+s")
         self.wait(lambda: not self.title().startswith("*"), "the document to be saved")
-        return coif.Scene.load(self.folder / "bob.coif").hair_mesh
+        return coif.Scene.load(self.folder / name).hair_mesh
+
+    def find_window(self):
+        # By process: the window of one that was killed may still stand for a moment.
+        self.search = ("search", "--all", "--onlyvisible", "--pid", self.process.pid, "--name", "Coif Studio")
+        self.window = self.wait(lambda: self.tool(*self.search), "a window")
 
     def end(self):
         if self.process.poll() is None:

@@ -23,10 +23,7 @@ def test_the_head_and_the_hair_are_seen(studio):
     from PIL import Image
 
     shot = studio.folder / "shot.png"
-    studio.key("F12")
-    studio.key("ctrl+a")
-    studio.type(str(shot))
-    studio.key("Return")
+    studio.path(shot, "F12")
     studio.wait(shot.exists, "the screenshot")
     pixels = np.asarray(Image.open(shot).convert("RGB"), float)
     view = pixels[60:540, 220:560]

@@ -1,14 +1,18 @@
 """coif-studio where something is missing, full, gone, empty or tiny: a sentence, and the work goes on."""
 
+import json
 import os
 import resource
 import shutil
+import signal
 import subprocess
+import sys
 import time
 
 import numpy as np
 import pytest
-from studio_window import BIN, PATIENCE, Studio, needs_window
+import x11
+from studio_window import BIN, PATIENCE, SAME_PICTURE, VIEW, Studio, linear, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 pytestmark = needs_window
@@ -121,6 +125,96 @@ def test_a_window_made_tiny_hidden_and_large_again(opened):
     studio.did("select_all", "a")
 
 
+def test_a_lost_context_is_made_anew_and_the_document_stays(opened):
+    # No driver here is ever reset, so a signal stands for it: window, context and all that they held are destroyed.
+    studio = opened(COIF_STUDIO_LOSABLE="1")
+    studio.did("select_all", "a")
+    studio.did("inflate", "alt+s")
+    studio.key("KP_1", "Home", "alt+a")
+    before = studio.settled("lost-before")
+    for _ in range(2):
+        old = studio.window
+        studio.process.send_signal(signal.SIGUSR1)
+        studio.point(*studio.middle())  # an event: an idle window looks at nothing
+        studio.wait(lambda old=old: studio.tool(*studio.search) not in ("", old), "a new window")
+        studio.find_window()
+    assert list((studio.folder / "state/coif/autosave").glob("*.coif")), "the work was kept at once"
+    studio.point(*studio.middle())
+    after = studio.settled("lost-after")
+    assert coif.flip(linear(after[VIEW]), linear(before[VIEW]))[0] < SAME_PICTURE, "strands, head and mesh are back"
+    # Panels too; but for the last line, which says what happened.
+    assert np.abs(after[:570, :180] - before[:570, :180]).mean() < 1, "the tools"
+    studio.did("undo", "ctrl+z")
+    studio.did("redo", "ctrl+shift+z")
+    studio.did("select_all", "a")
+    studio.did("smooth", "shift+r")
+    studio.saved()
+
+
+def test_a_minimised_window_is_not_drawn_and_goes_on_with_its_work(display, bob, tmp_path, monkeypatch):
+    monkeypatch.setenv("COIF_PYTHON", sys.executable)
+    monkeypatch.setenv("PYTHONPATH", os.path.dirname(os.path.dirname(coif.__file__)))
+    for name in ("bob.coif", "head.obj"):
+        shutil.copy(bob.parent / name, tmp_path / name)
+    (tmp_path / "script.py").write_text(
+        "import os, time\n"
+        "editor.select_all()\n"
+        "while not os.path.exists('stop'):\n"
+        "    editor.translate(by=(0, 0.01, 0))\n"
+        "    time.sleep(0.1)\n"
+        "editor.save()\n")
+    studio = Studio(display, tmp_path, "bob.coif", "--script", tmp_path / "script.py", "--trace",
+                    tmp_path / "trace.json").opened("bob.coif")
+    moves = lambda: sum("translate" in line for line in studio.lines())  # noqa: E731
+    try:
+        studio.wait(moves, "the script's first move")
+        x11.set_minimised(display, int(studio.window), True)
+        studio.tool("windowunmap", studio.window)
+        first = moves()
+        studio.wait(lambda: moves() > first + 10, "ten moves of a window that is not seen")
+        x11.set_minimised(display, int(studio.window), False)
+        studio.tool("windowmap", studio.window)
+        (tmp_path / "stop").touch()
+        studio.wait(lambda: not studio.title().startswith("*"), "the script to save")
+        studio.point(*studio.middle())
+        studio.did("select_none", "alt+a")
+        studio.saved()
+        studio.key("ctrl+q")
+        studio.wait(lambda: studio.process.poll() == 0, "the end")
+        events = json.loads((tmp_path / "trace.json").read_text())["traceEvents"]
+        drawn = [e["args"]["drawn before"] for e in events if e["name"] == "frame"]
+        runs = np.diff(np.flatnonzero(np.diff([-1, *drawn, -1])))
+        assert runs.max() > 10, "more than ten frames in a row that nobody could have seen were not drawn"
+    finally:
+        studio.end()
+
+
+def test_on_a_fine_display_all_is_larger_and_the_gizmo_too(display, bob, tmp_path):
+    for name in ("bob.coif", "head.obj"):
+        shutil.copy(bob.parent / name, tmp_path / name)
+    (tmp_path / "state/coif").mkdir(parents=True)
+    (tmp_path / "state/coif/studio.json").write_text('{"leftPanel": 180, "rightPanel": 180}')
+    with x11.dots_per_inch(display, 192):
+        studio = Studio(display, tmp_path, "bob.coif", size="1200x800").opened("bob.coif")
+    try:
+        bar = 2 * 19
+        middle = np.array([360 + (1200 - 720) / 2, bar + (800 - 2 * bar) / 2])
+        studio.point(*middle)
+        mesh = coif.Scene.load(studio.folder / "bob.coif").hair_mesh
+        studio.key("KP_1", "1")
+        studio.select(f"v {mesh.bundles[0].vertices[-1][0]}")
+        studio.key("f", "shift+2")
+        shot = studio.settled("fine-display")
+        # A column at the right of the menus: the bar's own colour, down to the panel below it.
+        height = np.argmax(np.abs(shot[:80, 1100] - shot[8, 1100]).max(axis=1)[8:] > 4) + 8
+        assert abs(height - bar) <= 4, f"the menu bar is {height} pixels high"
+        # Twice as far out as its arm reaches on a coarse display.
+        line = studio.does(lambda: studio.drag(middle + (140, 0), middle + (200, 4)), "translate")
+        assert ", 0, 0)" in line, "the handle along x was held"
+    finally:
+        studio.end()
+
+
 def test_rubbish_is_refused_and_the_document_stays(opened):
     def rubbish(folder):
         (folder / "state/coif").mkdir(parents=True)
@@ -130,9 +224,7 @@ def test_rubbish_is_refused_and_the_document_stays(opened):
     studio = opened(prepare=rubbish)
     broken = studio.folder / "broken.coif"
     broken.write_bytes(os.urandom(2000))
-    studio.key("ctrl+o", "ctrl+a")
-    studio.type(str(broken))
-    studio.key("Return")
+    studio.path(broken, "ctrl+o")
     alive(studio)
     assert "bob.coif" in studio.title()
     studio.did("select_all", "a")

@@ -98,15 +98,13 @@ def enter(studio, *lines):
 
 
 def test_the_console_runs_what_is_typed(studio):
-    studio.key("F4")
-    studio.click(400, 555)
-    enter(studio, "editor.select_all()")
-    studio.wait(lambda: any("select_all" in line for line in studio.lines()), "the console's command")
+    studio.key("F4")  # the console opens with the keyboard, and keeps it from line to line
+    enter(studio, "editor.select_all()", "editor.drape(seconds=2)")  # the second goes on beside the window
+    studio.wait(lambda: any("drape" in line for line in studio.lines()), "the console's commands")
     enter(studio, "for i in range(2): editor.translate(by=(0, 0.25, 0))", "")
     studio.wait(lambda: sum("translate" in line for line in studio.lines()) == 2, "a loop of two moves")
     enter(studio, "import os; os._exit(3)")  # Python dies: the studio does not
     time.sleep(1)
-    studio.click(400, 555)
     enter(studio, "editor.select_none()")
     studio.wait(lambda: any("select_none" in line for line in studio.lines()), "a new Python")
 

@@ -64,6 +64,40 @@ def test_the_gizmo_turns_and_scales(studio):
     assert abs(factors[0] - 2) < 0.15 and factors[1] == factors[2] == 1
 
 
+def test_handles_and_axes_follow_the_hair(studio):
+    corner = in_the_middle(studio)[0]
+    mesh = coif.Scene.load(studio.folder / "bob.coif").hair_mesh
+    parents = {int(v): int(p) for bundle in mesh.bundles
+               for upper, lower in zip(bundle.vertices[1:], bundle.vertices[:-1], strict=True)
+               for v, p in zip(upper, lower, strict=True)}
+    vertex = int(mesh.vertex_ids[corner])
+    link = mesh.positions[corner] - mesh.positions[mesh.indices([parents[vertex]])[0]]
+    along = link / np.linalg.norm(link)
+    studio.key("comma", "g", "y")
+    studio.type("0.5")
+    by = np.array(arguments(studio.did("translate", "Return"))["by"])
+    assert np.allclose(by, 0.5 * along, atol=1e-9)
+    studio.did("undo", "ctrl+z")
+    in_the_middle(studio, 2)
+    studio.key("comma", "r", "y")  # along the normal: y is still the hair's, as near as that leaves
+    studio.type("30")
+    axis = np.array(arguments(studio.did("rotate", "Return"))["axis"])
+    assert axis @ along > 0.8 and abs(np.linalg.norm(axis) - 1) < 1e-9
+    studio.did("undo", "ctrl+z")
+    studio.key("s", "z")
+    studio.type("2")
+    given = arguments(studio.did("scale", "Return"))
+    axes = np.reshape(given["axes"], (3, 3))
+    assert given["factors"] == (1, 1, 2) and np.allclose(axes @ axes.T, np.eye(3), atol=1e-9)
+    studio.key("shift+2")
+    studio.settled("gizmo-normal")
+    studio.key("comma")
+    in_the_middle(studio)
+    c = studio.middle()
+    by = arguments(studio.does(lambda: studio.drag(c + (60, 0), c + (110, 4)), "translate"))["by"]
+    assert by[0] > 0 and by[1] == 0 and by[2] == 0, "the scene's axes again"
+
+
 def test_numbers_and_planes_are_exact(studio):
     in_the_middle(studio, 2)
     studio.key("g")

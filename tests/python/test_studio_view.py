@@ -7,13 +7,11 @@ import time
 
 import numpy as np
 import pytest
-from studio_window import BAR, BIN, RIGHT, SIZE, needs_window
+from studio_window import BAR, BIN, RIGHT, SIZE, VIEW, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 
 pytestmark = needs_window
-
-VIEW = np.s_[60:540, 200:590]
 
 
 def listed(display, folder, settings=None):
@@ -114,9 +112,7 @@ def test_a_turntable_turns_and_is_written(studio):
     time.sleep(1)
     studio.key("t")
     assert np.abs(studio.shot("turntable-after")[VIEW] - before).mean() > 2
-    studio.key("ctrl+F12", "ctrl+a")
-    studio.type(str(studio.folder / "turn.png"))
-    studio.key("Return")
+    studio.path(studio.folder / "turn.png", "ctrl+F12")
     first, third = studio.folder / "turn-0001.png", studio.folder / "turn-0003.png"
     studio.wait(third.exists, "three pictures")
     studio.key("Escape")
@@ -126,25 +122,12 @@ def test_a_turntable_turns_and_is_written(studio):
     assert a.shape == b.shape and np.abs(a - b).mean() > 1, "from another side"
 
 
-def settled(studio, name):
-    """The view once its picture stays: the picture follows the camera by a thread of its own."""
-    shots = [studio.shot(name)[VIEW]]
-
-    def stays():
-        time.sleep(1)
-        shots.append(studio.shot(name)[VIEW])
-        return np.array_equal(shots[-1], shots[-2])
-
-    studio.wait(stays, "the picture to stay")
-    return shots[-1]
-
-
 def test_the_axes_in_the_corner_are_clicked(studio):
     studio.key("KP_1")
-    front = settled(studio, "axes-front")
+    front = studio.settled("axes-front")[VIEW]
     at = (SIZE[0] - RIGHT - 46 + 30, BAR + 48)  # the ball of +x, seen from the front
     studio.click(*at)
-    side = settled(studio, "axes-right")
+    side = studio.settled("axes-right")[VIEW]
     assert np.abs(front - side).mean() > 2
     studio.key("KP_1", "KP_3")
     same = lambda: np.abs(studio.shot("axes-key")[VIEW] - side).mean() < 6  # noqa: E731
