@@ -41,6 +41,7 @@ void addInfo(CLI::App& app, Session& session);
 void addCheck(CLI::App& app, Session& session);
 void addConvert(CLI::App& app, Session& session);
 void addBench(CLI::App& app, Session& session);
+void addStyle(CLI::App& app, Session& session);
 void addSimulate(CLI::App& app, Session& session);
 void addDrape(CLI::App& app, Session& session);
 void addExampleHead(CLI::App& app, Session& session);

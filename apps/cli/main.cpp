@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   addCheck(app, session);
   addConvert(app, session);
   addBench(app, session);
+  addStyle(app, session);
   addSimulate(app, session);
   addDrape(app, session);
   addExampleHead(app, session);

@@ -52,6 +52,7 @@ struct Subject {
   const HairMesh* mesh = nullptr;
   const PolygonMesh* head = nullptr;
   std::optional<Ground> ground;
+  bool styled = false;
 };
 
 Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, Evaluation& evaluation,
@@ -59,6 +60,7 @@ Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, 
   Subject subject;
   if (!arguments.noStrands) {
     COIF_ASSIGN(subject.strands, evaluation.strands(scene, context));
+    subject.styled = evaluation.stylePlan() != nullptr;
   }
   COIF_ASSIGN(subject.mesh, evaluation.placedMesh(scene, context));
   COIF_ASSIGN(const Surface* head, evaluation.head(scene, context));
@@ -86,7 +88,8 @@ class PreviewRenderer {
     COIF_ASSIGN(Preview preview, Preview::create());
     PreviewRenderer made(std::move(preview));
     // Points that grow() made on this mesh are made again on the GPU; anything else comes as it is.
-    if (subject.strands && scene.strands.tolerance <= 0) {
+    made.grown_ = subject.strands && scene.strands.tolerance <= 0 && !subject.styled;
+    if (made.grown_) {
       COIF_TRY(made.session_.setHair(*subject.mesh, *subject.strands, scene.strands.knots,
                                      scene.strands.points, context));
     } else if (subject.strands) {
@@ -94,7 +97,6 @@ class PreviewRenderer {
     }
     if (subject.head) COIF_TRY(made.session_.setHead(*subject.head));
     COIF_TRY(made.session_.setGround(subject.ground));
-    made.grown_ = subject.strands && scene.strands.tolerance <= 0;
     made.hairMesh_ = arguments.hairMesh;
     if (arguments.hairMesh) made.session_.setOverlay(*subject.mesh);
     made.session_.setLights(arguments.lights(scene));
@@ -112,6 +114,12 @@ class PreviewRenderer {
     for (const HairVertex& vertex : mesh.vertices()) positions.push_back(vertex.position);
     if (hairMesh_) session_.setOverlay(mesh);
     return grown_ ? session_.moveHair(positions, context) : Status();
+  }
+
+  /// Everything anew, where it is in the scene: a frame of styled hair.
+  Status show(const Subject& seen, const Context& context) {
+    if (seen.strands) COIF_TRY(session_.setStrands(*seen.strands, context));
+    return seen.head ? session_.setHead(*seen.head) : Status();
   }
 
   Result<Json> render(const Camera& camera, const std::string& path, const Context& context,
@@ -203,11 +211,12 @@ Status render(const Arguments& all, Session& session) {
     return preview ? preview->render(camera, path, context, session)
                    : tracePicture(seen, scene, arguments, camera, path, context, session);
   };
-  // The GPU's hair moves in the head's frame, where its roots stand still; the path tracer's in the scene's.
+  // The GPU's hair moves in the head's frame, where its roots stand still; styled hair and the path tracer's
+  // in the scene's.
   const auto frame = [&](const DynamicsCache& motion, std::size_t f,
                          const std::string& path) -> Result<Json> {
     const RigidPose& pose = motion.poses[f];
-    if (preview) {
+    if (preview && !subject.styled) {
       COIF_ASSIGN(const HairMesh moved, evaluation.meshAt(scene, motion, f, context));
       std::optional<Ground> ground;
       if (subject.ground) ground = groundFromHead(*subject.ground, pose);
@@ -222,6 +231,7 @@ Status render(const Arguments& all, Session& session) {
       seen.strands = &strands;
     }
     if (subject.head) seen.head = &head.emplace(headInWorld(*subject.head, pose));
+    if (preview) COIF_TRY(preview->show(seen, context));
     return picture(seen, cameraAt(0), path);
   };
   Json results = Json::array();

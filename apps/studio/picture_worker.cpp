@@ -126,7 +126,13 @@ Status PictureWorker::updateHair(const PictureRequest& request, const Context& c
   }
   if (hairShown_ && request.revision == shownRevision_) return {};
   const std::uint64_t topology = topologyHash(*request.scene);
-  if (hairShown_ && topology == shownTopology_) {
+  if (!request.scene->styles.empty()) {
+    const Trace::Span span(trace_, "style strands");
+    COIF_ASSIGN(const StrandSet* styled, evaluation_.strands(*request.scene, context));
+    COIF_TRY(session_->setStrands(*styled, context));
+    hairShown_ = true;
+    shownTopology_ = 0;
+  } else if (hairShown_ && topology == shownTopology_) {
     std::vector<Vec3> positions;
     for (const HairVertex& vertex : request.scene->hairMesh.vertices()) positions.push_back(vertex.position);
     const Trace::Span span(trace_, "move strands");
@@ -135,7 +141,7 @@ Status PictureWorker::updateHair(const PictureRequest& request, const Context& c
     const Trace::Span span(trace_, "grow strands");
     Scene roots = *request.scene;  // roots and widths are all that the session wants
     roots.strands.points = 2, roots.strands.tolerance = 0;
-    COIF_ASSIGN(const StrandSet* strands, evaluation_.strands(roots, context));
+    COIF_ASSIGN(const StrandSet* strands, evaluation_.grownStrands(roots, context));
     COIF_TRY(session_->setHair(request.scene->hairMesh, *strands, request.scene->strands.knots,
                                request.scene->strands.points, context));
     hairShown_ = true;

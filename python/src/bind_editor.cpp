@@ -6,6 +6,7 @@
 
 #include "bind.h"
 #include "bind_hairmesh.h"
+#include "bind_style.h"
 #include "coif/io/mesh_io.h"
 #include "coif/scene/editor.h"
 
@@ -142,6 +143,9 @@ void bindEditor(nb::module_& m) {
             return idArray(selectedBundles(model.editor.mesh(), model.editor.state().selection));
           },
           nb::rv_policy::reference, "Ids of the bundles with a selected face (N,), ascending.")
+      .def_prop_ro(
+          "styles", [](const EditorModel& model) { return fromStyles(model.editor.state().styles); },
+          "The style's operators, as Scene.styles gives them.")
       .def_prop_ro(
           "steps", [](const EditorModel& model) { return model.editor.stepLabels(); },
           "Labels of all steps, oldest first, undone ones included.")

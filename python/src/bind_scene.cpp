@@ -13,6 +13,7 @@
 #include "bind_scalp.h"
 #include "bind_simulate.h"
 #include "bind_strands.h"
+#include "bind_style.h"
 #include "coif/scene/evaluate.h"
 #include "coif/scene/hairstyle.h"
 #include "coif/scene/scene.h"
@@ -327,6 +328,14 @@ void bindScene(nb::module_& m) {
       .def_prop_ro(
           "strands", [](SceneModel& s) -> StrandSettings& { return s.scene.strands; },
           nb::rv_policy::reference_internal, "How strands grow; change its fields.")
+      .def_prop_rw(
+          "styles", [](const SceneModel& s) { return fromStyles(s.scene.styles); },
+          [](SceneModel& s, const nb::object& styles) { s.scene.styles = toStyles(styles); },
+          "What is done to the strands, in order: a list of dicts with kind, name, enabled, amount, seed, "
+          "group,\nparameters (dict), ramp (list of (x, y)), smooth and mask (root vertex id → 0 … 1). A "
+          "copy: "
+          "assign it back\nafter a change. In what is assigned only 'kind' is needed; style_kinds() lists "
+          "them.")
       .def_prop_rw(
           "name", [](const SceneModel& s) { return s.scene.name; },
           [](SceneModel& s, std::string name) { s.scene.name = std::move(name); }, "Name of the hairstyle.")

@@ -1,6 +1,7 @@
 // The extension module coif._coif: one binding unit a room, in the order of the rooms.
 #include "bind.h"
 #include "bind_simulate.h"
+#include "bind_style.h"
 
 NB_MODULE(_coif, m) {
   using namespace coif::python;
@@ -10,6 +11,7 @@ NB_MODULE(_coif, m) {
   bindHairMesh(m);
   bindPlace(m);
   bindStrands(m);
+  bindStyle(m);
   bindLight(m);
   bindSimulate(m);
   bindScene(m);

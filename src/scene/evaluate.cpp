@@ -17,8 +17,8 @@ std::uint64_t hashDouble(std::uint64_t hash, double value) {
   return hashCombine(hash, std::bit_cast<std::uint64_t>(value));
 }
 
-std::uint64_t strandsKey(const StrandSettings& s, std::uint64_t mesh, std::uint64_t head,
-                         double metersPerUnit) {
+std::uint64_t hashStrands(const StrandSettings& s, std::uint64_t mesh, std::uint64_t head,
+                          double metersPerUnit) {
   std::uint64_t hash = hashCombine(mesh, head);
   for (std::uint64_t value :
        {std::uint64_t(s.count), std::uint64_t(s.points), s.seed, std::uint64_t(s.knots)}) {
@@ -151,9 +151,12 @@ Status Evaluation::Impl::runPlace(const Scene& scene, const Context& context) {
   return {};
 }
 
+std::uint64_t Evaluation::Impl::strandsKeyOf(const Scene& scene) const {
+  return hashStrands(scene.strands, placedHash, head ? hashCombine(1, headHash) : 0, scene.metersPerUnit);
+}
+
 Status Evaluation::Impl::growStrands(const Scene& scene, const Context& context) {
-  const std::uint64_t headKey = head ? hashCombine(1, headHash) : 0;
-  const std::uint64_t key = coif::strandsKey(scene.strands, placedHash, headKey, scene.metersPerUnit);
+  const std::uint64_t key = strandsKeyOf(scene);
   if (strandsKey == key && !forced("strands")) {
     add("strands", StageState::Reused, "neither mesh, head nor settings changed", 0, grown.strands.bytes());
     return {};
@@ -206,12 +209,19 @@ Result<const HairMesh*> Evaluation::placedMesh(const Scene& scene, const Context
   return static_cast<const HairMesh*>(&impl_->placed);
 }
 
-Result<const StrandSet*> Evaluation::strands(const Scene& scene, const Context& context) {
+Result<const StrandSet*> Evaluation::grownStrands(const Scene& scene, const Context& context) {
   COIF_TRY(impl_->loadHead(scene, context));
   COIF_TRY(impl_->check(scene));
   COIF_TRY(impl_->runPlace(scene, context));
   COIF_TRY(impl_->growStrands(scene, context));
   return static_cast<const StrandSet*>(&impl_->grown.strands);
+}
+
+Result<const StrandSet*> Evaluation::strands(const Scene& scene, const Context& context) {
+  COIF_ASSIGN(const StrandSet* unstyled, grownStrands(scene, context));
+  (void)unstyled;
+  COIF_TRY(impl_->style(scene, context));
+  return &impl_->strands();
 }
 
 Result<WriteReport> Evaluation::exportTo(const Scene& scene, const std::filesystem::path& path,

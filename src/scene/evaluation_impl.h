@@ -1,4 +1,5 @@
-// What an Evaluation keeps between calls; its stages are in evaluate.cpp and simulate_stage.cpp.
+// What an Evaluation keeps between calls; its stages are in evaluate.cpp, style_stage.cpp and
+// simulate_stage.cpp.
 #pragma once
 
 #include <optional>
@@ -23,6 +24,10 @@ struct Evaluation::Impl {
   std::optional<PlaceReport> placeReport;
   std::optional<std::uint64_t> strandsKey;
   GrowResult grown;
+  std::optional<std::uint64_t> styleKey, motionStyleKey;
+  StylePlan stylePlan;
+  StrandSet styled;      // empty while the plan changes nothing
+  StylePlan motionPlan;  // of strands with fixed points, where the scene's are adaptive
   std::optional<DynamicsCache> motion;
   std::optional<SimulationReport> simulationReport;
 
@@ -44,7 +49,12 @@ struct Evaluation::Impl {
   Status loadHead(const Scene& scene, const Context& context);
   Status check(const Scene& scene);
   Status runPlace(const Scene& scene, const Context& context);
+  std::uint64_t strandsKeyOf(const Scene& scene) const;  // with the placed mesh and the head held
   Status growStrands(const Scene& scene, const Context& context);
+  Status style(const Scene& scene, const Context& context);
+  const StrandSet& strands() const { return stylePlan.changesNothing() ? grown.strands : styled; }
+  /// The style of strands with fixed points, on the mesh at rest.
+  Result<const StylePlan*> styleForMotion(const Scene& scene, const Context& context);
   Status simulate(const Scene& scene, const SimulateOptions& what, const Context& context);
 
   struct Skin {

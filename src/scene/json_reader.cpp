@@ -38,6 +38,26 @@ JsonReader JsonReader::object(const char* key) {
   return JsonReader(found ? *found : kEmptyObject, path_ + key + ".", *sharedFault_);
 }
 
+std::vector<JsonReader> JsonReader::objects(const char* key) {
+  std::vector<JsonReader> out;
+  const nlohmann::json* found = find(key, true);
+  if (!found) return out;
+  bool good = found->is_array();
+  for (std::size_t i = 0; good && i < found->size(); ++i) {
+    good = (*found)[i].is_object();
+    out.push_back(JsonReader(good ? (*found)[i] : kEmptyObject, path_ + key + "[" + std::to_string(i) + "].",
+                             *sharedFault_));
+  }
+  if (!good) fail(key, "a list of objects is wanted here"), out.clear();
+  return out;
+}
+
+std::vector<std::string> JsonReader::keys() const {
+  std::vector<std::string> out;
+  for (const auto& [key, value] : value_->items()) out.push_back(key);
+  return out;
+}
+
 std::string JsonReader::text(const char* key, const std::string& fallback) {
   const nlohmann::json* found = find(key, false);
   if (!found) return fallback;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "coif/base/result.h"
 #include "coif/base/vec.h"
@@ -15,6 +16,8 @@ class JsonReader {
   explicit JsonReader(const nlohmann::json& value) : JsonReader(value, "", fault_) {}
 
   JsonReader object(const char* key);
+  std::vector<JsonReader> objects(const char* key);  ///< a list, required
+  std::vector<std::string> keys() const;
   bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
   std::string text(const char* key, const std::string& fallback);
   std::string requiredText(const char* key);

@@ -6,6 +6,7 @@
 #include "coif/scene/scene.h"
 #include "scene/dynamics_json.h"
 #include "scene/json_reader.h"
+#include "scene/style_json.h"
 #include "scene/typed_array.h"
 
 namespace coif {
@@ -231,6 +232,7 @@ Result<Scene> readScene(const nlohmann::json& json) {
   out.head.contentHash = head.integer("contentHash", 0, 0, ~std::uint64_t{0});
   out.placedHash = reader.integer("placedHash", 0, 0, ~std::uint64_t{0});
   if (reader.has("strands")) out.strands = readStrands(reader.object("strands"));
+  if (reader.has("styles")) out.styles = scene::readStyles(reader);
   if (reader.has("look")) out.look = readLook(reader.object("look"));
   if (reader.has("dynamics")) out.dynamics = scene::readDynamics(reader.object("dynamics"));
   COIF_TRY(reader.status());
@@ -253,6 +255,7 @@ std::string sceneText(const Scene& scene) {
   out["strands"] = {
       {"count", s.count}, {"points", s.points},     {"tolerance", s.tolerance},         {"seed", s.seed},
       {"width", s.width}, {"tipWidth", s.tipWidth}, {"knots", kKnotNames[int(s.knots)]}};
+  out["styles"] = scene::stylesJson(scene.styles);
   const Vec3f& c = scene.look.hairColor;
   out["look"] = {{"azimuth", scene.look.azimuthDeg},
                  {"elevation", scene.look.elevationDeg},

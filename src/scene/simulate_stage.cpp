@@ -166,6 +166,8 @@ Result<StrandSet> Evaluation::strandsAt(const Scene& scene, const DynamicsCache&
   Scene asked = scene;
   asked.strands.tolerance = 0;
   COIF_ASSIGN(GrowResult grown, grow(mesh, growOptions(asked, impl_->head.get()), context));
+  COIF_ASSIGN(const StylePlan* style, impl_->styleForMotion(scene, context));
+  COIF_TRY(style->apply(mesh, grown.strands, context));
   for (Vec3f& p : grown.strands.points) p = pose.world(p.cast<double>()).cast<float>();
   return std::move(grown.strands);
 }

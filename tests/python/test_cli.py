@@ -118,7 +118,7 @@ def test_failed_export_leaves_the_old_file(scenes, tmp_path):
 def test_spoilt_scene_is_refused(scenes, tmp_path):
     text = (scenes / "bob.coif").read_text()
     for name, spoilt in {"cut": text[: len(text) // 2], "empty": "", "text": "hair", "types": text.replace("f64:", "u8:"),
-                         "version": text.replace('"version": 2', '"version": 77')}.items():
+                         "version": text.replace('"version": 3', '"version": 77')}.items():
         path = tmp_path / f"{name}.coif"
         path.write_text(spoilt)
         done = run("build", path, "-o", tmp_path / "x.usdc", status=1)

@@ -376,8 +376,9 @@ TEST(Commands, WithoutAKeyHaveAnotherWayIn) {
   // Lists that the mouse fills in, and settings that a panel shows.
   const std::set<std::string> keyless{"select",   "displace",  "brush",       "set_strands",
                                       "set_look", "set_light", "set_dynamics"};
+  const auto inPanel = [](const CommandInfo& info) { return info.menu == "Style"; };
   for (const CommandInfo& info : commandInfos()) {
-    EXPECT_EQ(info.key.empty(), keyless.contains(info.name)) << info.name;
+    EXPECT_EQ(info.key.empty(), keyless.contains(info.name) || inPanel(info)) << info.name;
   }
 }
 
@@ -391,7 +392,9 @@ TEST(Commands, PythonLinesReadBackAsTheSameNumbers) {
 }
 
 /// A random argument within its range; lists of ids are drawn from the mesh.
-CommandArguments randomArguments(const CommandInfo& info, const HairMesh& mesh, const CounterRandom& random) {
+CommandArguments randomArguments(const CommandInfo& info, const Editor& editor, const CounterRandom& random) {
+  const HairMesh& mesh = editor.mesh();
+  const StyleStack& styles = editor.state().styles;
   CommandArguments out;
   std::uint64_t draw = 0;
   for (const CommandArgument& argument : info.arguments) {
@@ -399,6 +402,18 @@ CommandArguments randomArguments(const CommandInfo& info, const HairMesh& mesh, 
     if (argument.kind == ArgumentKind::Number && argument.name != "about_pivot") {
       const double least = std::max(argument.least, -0.3), most = std::min(argument.most, 0.3);
       out[argument.name] = least + u * (std::max(most, least) - least);
+    } else if (argument.name == "operator" && !styles.empty()) {
+      out[argument.name] = styles[random.below(draw++, std::uint32_t(styles.size()))].name;
+    } else if (argument.name == "points" && argument.kind == ArgumentKind::Numbers) {
+      out[argument.name] = std::vector<double>{0, u, 0.5 + 0.5 * u, 1 - u};
+    } else if (argument.name == "vertices" && info.name == "set_mask" && u < 0.8) {
+      out[argument.name] = std::vector<double>{double(std::uint32_t(mesh.vertices()[0].id))};
+      out["values"] = std::vector<double>{random.uniform(draw++)};
+    } else if (argument.name == "parameter") {
+      const char* names[] = {"amount", "enabled", "seed", "count", "radius"};
+      out[argument.name] = std::string(names[random.below(draw++, 5)]);
+    } else if (argument.name == "name" && info.menu == "Style") {
+      out[argument.name] = std::string(1, char('a' + random.below(draw++, 26)));
     } else if (argument.kind == ArgumentKind::Choice) {
       out[argument.name] = argument.choices[random.below(draw++, std::uint32_t(argument.choices.size()))];
     } else if (argument.kind == ArgumentKind::Vector && argument.name != "normal" &&
@@ -446,7 +461,7 @@ TEST_P(RandomCommands, KeepEveryInvariantAndUndoToTheFirstByte) {
       continue;
     if (editor.mesh().bundles().size() < 4 && info.name == "delete") continue;
     const auto before = editor.canonicalState();
-    const Status status = editor.run(info.name, randomArguments(info, editor.mesh(), random.child(k)));
+    const Status status = editor.run(info.name, randomArguments(info, editor, random.child(k)));
     if (!status.ok()) {
       ++refused;
       EXPECT_FALSE(status.error().message.empty());

@@ -118,7 +118,7 @@ TEST(Evaluation, ReportIsJsonWithEveryStage) {
   Evaluation evaluation(withoutHead());
   ASSERT_TRUE(evaluation.strands(scene).ok());
   const auto report = nlohmann::json::parse(reportJson(evaluation.reports()));
-  ASSERT_EQ(report["stages"].size(), 4u);
+  ASSERT_EQ(report["stages"].size(), 5u);
   for (const auto& stage : report["stages"]) {
     EXPECT_TRUE(stage.contains("stage") && stage.contains("state") && stage.contains("because"));
     EXPECT_GE(stage["seconds"].get<double>(), 0.0);

@@ -32,6 +32,7 @@ struct EditState {
   bool symmetric = false;        ///< operations and moves happen on both sides of the mirror plane
   Vec3 mirrorPoint = Vec3::Zero(), mirrorNormal = Vec3::UnitX();
   StrandSettings strands;
+  StyleStack styles;
   LookSettings look;
   DynamicsSettings dynamics;
   bool operator==(const EditState&) const;
@@ -44,7 +45,7 @@ class Editor {
   Editor(Editor&&) noexcept;
   Editor& operator=(Editor&&) noexcept;
 
-  /// The document as it stands. scene().strands, .look and .dynamics are those of state().
+  /// The document as it stands. scene().strands, .styles, .look and .dynamics are those of state().
   const Scene& scene() const { return scene_; }
   const HairMesh& mesh() const { return scene_.hairMesh; }
   const EditState& state() const { return state_; }

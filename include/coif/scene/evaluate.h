@@ -1,7 +1,7 @@
 // The lazy stage graph: a stage runs only if its result is asked for and one of its inputs changed.
 //
 //   head ──────────────┐
-//   hair mesh ─ place ─┼─ strands ─ export
+//   hair mesh ─ place ─┼─ strands ─ style ─ export
 //                      └─ simulate ─ strands of a frame
 #pragma once
 
@@ -17,6 +17,7 @@
 #include "coif/scene/dynamics_cache.h"
 #include "coif/scene/scene.h"
 #include "coif/simulate/simulation.h"
+#include "coif/style/style_plan.h"
 
 namespace coif {
 
@@ -37,7 +38,7 @@ struct SimulateOptions {
 };
 
 /// Names of the stages, in order.
-inline constexpr const char* kStages[] = {"head", "check", "place", "strands", "simulate", "export"};
+inline constexpr const char* kStages[] = {"head", "check", "place", "strands", "style", "simulate", "export"};
 
 /// Holds the results of the stages between calls, keyed by hashes of their inputs.
 class Evaluation {
@@ -50,7 +51,10 @@ class Evaluation {
   Result<const Surface*> head(const Scene& scene, const Context& context = {});
   /// The hair mesh with internal vertices placed.
   Result<const HairMesh*> placedMesh(const Scene& scene, const Context& context = {});
+  /// Styled, as they are shown and exported.
   Result<const StrandSet*> strands(const Scene& scene, const Context& context = {});
+  /// As the hair mesh has them: the stack is not looked at.
+  Result<const StrandSet*> grownStrands(const Scene& scene, const Context& context = {});
   /// Hair in motion: at least the frames asked for. Reused when nothing changed, gone on with from memory or
   /// from the cache file when more frames are wanted. Errors also those of Simulation and of the file; a
   /// cache of another simulation is an error, never overwritten.
@@ -78,7 +82,9 @@ class Evaluation {
   /// What each stage did, oldest first; cleared by clearReports().
   const std::vector<StageReport>& reports() const;
   void clearReports();
-  const GrowReport* growReport() const;              ///< of the strands held; null when none
+  const GrowReport* growReport() const;  ///< of the strands held; null when none
+  /// What the style does to the strands held; null when it does nothing or has not been asked for.
+  const StylePlan* stylePlan() const;
   const PlaceReport* placeReport() const;            ///< of the last solve; null when none ran
   const SimulationReport* simulationReport() const;  ///< of the frames computed last; null when none
 

@@ -1,4 +1,5 @@
-// The document: which head, which hair mesh, how strands grow on it, how it is looked at. A .coif file.
+// The document: which head, which hair mesh, how strands grow on it and are styled, how it is looked at. A
+// .coif file.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "coif/light/lights.h"
 #include "coif/simulate/dynamics_settings.h"
 #include "coif/strands/grow.h"
+#include "coif/style/style_operator.h"
 
 namespace coif {
 
@@ -41,8 +43,8 @@ struct LightSettings {
 
 /// How `coif render` looks at it when not told otherwise.
 struct LookSettings {
-  double azimuthDeg = 30, elevationDeg = 8;      ///< of the camera; 0, 0 looks at the face
-  Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);  ///< linear RGB reflectance
+  double azimuthDeg = 30, elevationDeg = 8;                      ///< of the camera; 0, 0 looks at the face
+  Vec3f hairColor = Vec3f(0.16f, 0.08f, 0.04f);                  ///< linear RGB reflectance
   double longitudinalRoughness = 0.3, azimuthalRoughness = 0.3;  ///< FibreParameters' β_m and β_n
   LightSettings light;
   bool operator==(const LookSettings&) const = default;
@@ -53,7 +55,7 @@ Lights lightsOf(const LightSettings& settings, UpAxis upAxis);
 FibreParameters fibreOf(const LookSettings& look);
 
 struct Scene {
-  static constexpr int kVersion = 2;  ///< of the file format; 1 had no dynamics
+  static constexpr int kVersion = 3;  ///< of the file format; 1 had no dynamics, 2 no styles
 
   std::string name;  ///< of the hairstyle
   HeadReference head;
@@ -63,6 +65,7 @@ struct Scene {
   std::uint64_t placedHash =
       0;  ///< meshHash() right after the last placement; equal now: nothing moved since
   StrandSettings strands;
+  StyleStack styles;  ///< what is done to the strands, in this order
   LookSettings look;
   DynamicsSettings dynamics;
   std::filesystem::path file;  ///< where it was loaded from or saved to; not stored

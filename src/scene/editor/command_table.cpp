@@ -35,7 +35,7 @@ const std::vector<Command>& commands() {
     list.push_back({{"undo", "Undo", "Edit", "Ctrl+Z", "Takes the last step back."}, {}});
     list.push_back({{"redo", "Redo", "Edit", "Ctrl+Shift+Z", "Does the step taken back again."}, {}});
     for (auto part : {selectCommands, meshCommands, moveCommands, brushCommands, settingCommands,
-                      motionCommands, fileCommands}) {
+                      styleCommands, motionCommands, fileCommands}) {
       for (Command& command : part()) list.push_back(std::move(command));
     }
     return list;

@@ -66,6 +66,7 @@ std::vector<Command> meshCommands();
 std::vector<Command> moveCommands();
 std::vector<Command> brushCommands();
 std::vector<Command> settingCommands();
+std::vector<Command> styleCommands();
 std::vector<Command> motionCommands();
 std::vector<Command> fileCommands();
 

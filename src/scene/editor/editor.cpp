@@ -5,13 +5,14 @@
 
 #include "scene/dynamics_json.h"
 #include "scene/editor/command_table.h"
+#include "scene/style_json.h"
 
 namespace coif {
 
 bool EditState::operator==(const EditState& o) const {
   return selection == o.selection && hidden == o.hidden && frozen == o.frozen && symmetric == o.symmetric &&
          mirrorPoint == o.mirrorPoint && mirrorNormal == o.mirrorNormal && strands == o.strands &&
-         look == o.look && dynamics == o.dynamics;
+         styles == o.styles && look == o.look && dynamics == o.dynamics;
 }
 
 namespace {
@@ -32,6 +33,7 @@ bool sameTopology(const HairMesh& a, const HairMesh& b) {
 
 Editor::Editor(Scene scene) : scene_(std::move(scene)), cache_(std::make_unique<editor::AttemptCache>()) {
   state_.strands = scene_.strands;
+  state_.styles = scene_.styles;
   state_.look = scene_.look;
   state_.dynamics = scene_.dynamics;
 }
@@ -115,6 +117,7 @@ void Editor::record(const PreparedCommand& outcome) {
 void Editor::adopt(const EditState& state) {
   state_ = state;
   scene_.strands = state_.strands;
+  scene_.styles = state_.styles;
   scene_.look = state_.look;
   scene_.dynamics = state_.dynamics;
   ++revision_;
@@ -162,6 +165,8 @@ std::size_t Editor::historyBytes() const {
   for (const Step& step : steps_) {
     bytes += sizeof step + step.label.size() + step.python.size() + sizeof(EditState) +
              step.after->selection.size() * sizeof(EdgeRef);
+    for (const StyleOperator& op : step.after->styles)
+      bytes += sizeof op + op.mask.size() * sizeof op.mask[0];
   }
   return bytes;
 }
@@ -201,6 +206,7 @@ std::vector<std::byte> Editor::canonicalState() const {
     put(value);
   put(light.followCamera);
   for (int i = 0; i < 3; ++i) put(state_.look.hairColor[i]);
+  putAll(scene::stylesJson(state_.styles).dump());
   putAll(scene::dynamicsJson(state_.dynamics).dump());
   return bytes;
 }
