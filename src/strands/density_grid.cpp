@@ -28,6 +28,30 @@ bool usable(const GridPoint& p) {
   return p.weight >= 0;
 }
 
+/// Points [begin, end) of one strand, all usable, and their slabs (not wrapped): a run for every stretch of
+/// points in one slab, with the segments that lead there and away, and single segments where slabs are passed
+/// over.
+void binStretches(std::span<std::vector<SegmentRun>> bins, const int* slabOf, std::uint32_t begin,
+                  std::uint32_t end, std::uint32_t base) {
+  if (end - begin < 2) return;
+  const int slabs = int(bins.size());
+  const auto add = [&](int slab, std::uint32_t first, std::uint32_t last) {
+    bins[std::size_t(slab & (slabs - 1))].push_back({first, last - first});
+  };
+  std::uint32_t first = begin;
+  int a = slabOf[begin - base];
+  for (std::uint32_t p = begin; p + 1 < end; ++p) {
+    const int b = slabOf[p + 1 - base];
+    if (a == b) continue;
+    add(a, first, p + 1);
+    const int step = a < b ? 1 : -1, far = std::abs(b - a);
+    for (int at = 1; at < std::min(far, slabs); ++at) add(a + at * step, p, p + 1);
+    first = far < slabs ? p : p + 1;  // a whole turn: the slab has this segment
+    a = b;
+  }
+  if (first + 1 < end) add(a, first, end - 1);
+}
+
 }  // namespace
 
 GridDeposit::GridDeposit(int log2Size, Length length) : log2Size_(log2Size), length_(length) {}
@@ -55,20 +79,17 @@ void GridDeposit::bin(std::span<const GridPoint> points, std::span<const std::ui
       const int whole = int(y);
       slabOf[p] = (whole - (y < float(whole))) >> 3;
     }
-    for (std::uint64_t p = first; p < first + count; ++p) {
-      if (usable(points[p])) range.add(points[p]);
-    }
     for (std::size_t s = begin; s < end; ++s) {
-      for (std::uint64_t p = offsets[s]; p + 1 < offsets[s + 1]; ++p) {
-        if (!usable(points[p]) || !usable(points[p + 1])) continue;
-        const int a = slabOf[p - first], b = slabOf[p + 1 - first];
-        bins[std::size_t(a & (slabs - 1))].push_back(std::uint32_t(p));
-        if (a == b) continue;
-        const int step = a < b ? 1 : -1, others = std::min(std::abs(b - a), slabs - 1);
-        for (int at = 1; at <= others; ++at) {
-          bins[std::size_t((a + at * step) & (slabs - 1))].push_back(std::uint32_t(p));
+      auto from = std::uint32_t(offsets[s]);
+      for (std::uint64_t p = offsets[s]; p < offsets[s + 1]; ++p) {
+        if (usable(points[p])) {
+          range.add(points[p]);
+          continue;
         }
+        binStretches(bins, slabOf.data(), from, std::uint32_t(p), std::uint32_t(first));
+        from = std::uint32_t(p + 1);
       }
+      binStretches(bins, slabOf.data(), from, std::uint32_t(offsets[s + 1]), std::uint32_t(first));
     }
     ranges[begin / kStrandsAChunk] = range;
   });
@@ -101,7 +122,7 @@ void GridDeposit::fill(int slab, std::span<float> cells, int lanes) const {
   task.acrossLast = length_ == Length::AcrossLast;
   task.cells = cells.data();
   for (const auto& bins : bins_) {
-    task.segments = bins[std::size_t(slab)];
+    task.runs = bins[std::size_t(slab)];
     depositSegments(task, lanes > 0 ? lanes : widestLanes());
   }
 }

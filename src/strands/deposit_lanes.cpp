@@ -34,10 +34,33 @@ using Quad = Lanes<4>::Float;
   storeLanes(w, Quad(__builtin_shufflevector(c, d, 2, 3, 6, 7)));
 }
 
-[[gnu::always_inline]] inline int prepare(const DepositTask& task, std::size_t first, Stage& s) {
-  const int count = int(std::min<std::size_t>(kStage, task.segments.size() - first));
+/// Runs, segment by segment.
+class Segments {
+ public:
+  explicit Segments(std::span<const SegmentRun> runs) : runs_(runs) {}
+  /// The next ones' first points, as many as there are and fit.
+  int next(std::uint32_t (&out)[kStage]) {
+    int count = 0;
+    while (count < kStage && run_ < runs_.size()) {
+      const SegmentRun run = runs_[run_];
+      const std::uint32_t more = std::min(run.count - done_, std::uint32_t(kStage - count));
+      for (std::uint32_t k = 0; k < more; ++k) out[count + int(k)] = run.first + done_ + k;
+      count += int(more);
+      done_ += more;
+      if (done_ == run.count) ++run_, done_ = 0;
+    }
+    return count;
+  }
+
+ private:
+  std::span<const SegmentRun> runs_;
+  std::size_t run_ = 0;
+  std::uint32_t done_ = 0;
+};
+
+[[gnu::always_inline]] inline int prepare(const DepositTask& task, const std::uint32_t (&segments)[kStage],
+                                          int count, Stage& s) {
   const int padded = (count + kBatch - 1) / kBatch * kBatch;
-  const std::uint32_t* segments = task.segments.data() + first;
   for (int l = 0; l < count; l += 4) {  // beyond the last one it is repeated, to be overwritten below
     Quad ends[2][4];
     for (int q = 0; q < 4; ++q) {
@@ -133,7 +156,9 @@ template <int W>
   }
   constexpr int kQuad = 4;  // the order of the sums is that of four lanes
   for (int quad = 0; quad < W; quad += kQuad) {
-    for (int at = quad; at < steps * W; at += W) {
+    const int* most = s.faces + first + quad;
+    const int own = 1 + std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+    for (int at = quad; at < own * W; at += W) {
       for (int l = at; l < at + kQuad; ++l) task.cells[cells[std::size_t(l)]] += pieces[std::size_t(l)];
     }
   }
@@ -144,9 +169,11 @@ template <int W>
   Stage stage;
   std::vector<int> cells;
   std::vector<float> pieces;
-  for (std::size_t first = 0; first < task.segments.size(); first += kStage) {
-    const int count = prepare(task, first, stage);
-    for (int at = 0; at < count; at += W) walk<W>(task, stage, at, cells, pieces);
+  Segments segments(task.runs);
+  std::uint32_t some[kStage];
+  while (const int count = segments.next(some)) {
+    const int padded = prepare(task, some, count, stage);
+    for (int at = 0; at < padded; at += W) walk<W>(task, stage, at, cells, pieces);
   }
 }
 

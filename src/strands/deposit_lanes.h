@@ -10,8 +10,8 @@ namespace coif {
 
 struct DepositTask {
   std::span<const GridPoint> points;
-  std::span<const std::uint32_t> segments;  ///< first points
-  float origin[3] = {0, 0, 0};              ///< a multiple of the grid's size below all cells that hair is in
+  std::span<const SegmentRun> runs;
+  float origin[3] = {0, 0, 0};  ///< a multiple of the grid's size below all cells that hair is in
   int log2Size = 7;
   int rowBegin = 0;         ///< of the slab, wrapped
   bool acrossLast = false;  ///< GridDeposit::Length

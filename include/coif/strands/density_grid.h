@@ -46,6 +46,11 @@ struct GridPoint {
   float x = 0, y = 0, z = 0, weight = 0;
 };
 
+/// Segments of a strand that follow each other, by their first points.
+struct SegmentRun {
+  std::uint32_t first = 0, count = 0;
+};
+
 /// Clips segments exactly at the cells' faces and adds weight × length to every cell they pass; by slabs of
 /// rows that threads can fill apart from each other. Weight is linear along a segment; length is measured
 /// along all axes, or across the last one ("along the light") only. The sum over all cells is Σ weight ×
@@ -84,7 +89,7 @@ class GridDeposit {
   std::array<long, 3> first_{0, 0, 0};
   bool fits_ = true;
   std::span<const GridPoint> points_;
-  std::vector<std::vector<std::vector<std::uint32_t>>> bins_;  ///< chunk, slab: first points of segments
+  std::vector<std::vector<std::vector<SegmentRun>>> bins_;  ///< chunk, slab: those that reach it, in order
 };
 
 struct DensityReport {
