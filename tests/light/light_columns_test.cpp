@@ -1,0 +1,63 @@
+#include "light/light_columns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "coif/base/lanes.h"
+#include "coif/base/random.h"
+
+namespace coif::light {
+namespace {
+
+constexpr std::size_t kWidth = 2048 + 16, kLayers = 32, kFirst = 5;  // more than one strip, and a part of one
+
+/// Optical depths of cells, many of them empty, some of them of no light at all.
+std::vector<float> someHair() {
+  std::vector<float> cells(kWidth * kLayers, 0.0f);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CounterRandom random(7, i);
+    const bool emptyGroup = i / 64 % 3 == 0;
+    if (!emptyGroup && random.uniform(0) < 0.4) cells[i] = float(std::pow(10.0, 6 * random.uniform(1) - 4));
+  }
+  return cells;
+}
+
+TEST(LightColumns, SameBytesForAnyNumberOfLanes) {
+  std::vector<float> four = someHair();
+  transmittanceByColumns(four.data(), kWidth, kLayers, kFirst, 4);
+  for (int lanes = 8; lanes <= widestLanes(); lanes *= 2) {
+    std::vector<float> more = someHair();
+    transmittanceByColumns(more.data(), kWidth, kLayers, kFirst, lanes);
+    ASSERT_EQ(four, more) << lanes;
+  }
+}
+
+TEST(LightColumns, AreTheExponentialsOfRunningSums) {
+  const std::vector<float> hair = someHair();
+  std::vector<float> passed = hair;
+  transmittanceByColumns(passed.data(), kWidth, kLayers, kFirst, widestLanes());
+  double worst = 0;
+  for (std::size_t column = 0; column < kWidth; ++column) {
+    float sum = 0;
+    for (std::size_t layer = 0; layer < kLayers; ++layer) {
+      const std::size_t at = (kFirst + layer) % kLayers * kWidth + column;
+      sum += hair[at];
+      const double truth = std::exp(-double(sum)), mine = double(passed[at]);
+      if (truth > 1e-37) {
+        // The series' remainder, 2.6e-6 at most; the rounding of x / ln 2, half a unit of 2⁻²³ of it, and of
+        // eight steps.
+        const double allowed = 2.6e-6 + 8 * 0x1p-24 + double(sum) * 0x1p-23;
+        worst = std::max(worst, std::abs(mine / truth - 1));
+        ASSERT_NEAR(mine / truth, 1, allowed) << sum;
+      } else {
+        ASSERT_TRUE(mine >= 0 && mine < 2e-37) << sum;
+      }
+    }
+  }
+  EXPECT_GT(worst, 1e-6);  // the far end of the series was met
+}
+
+}  // namespace
+}  // namespace coif::light
