@@ -120,23 +120,39 @@ void shootAround(const StrandShooter& strands, const DualScattering& hair, const
   out.directFraction = hidden || !meetings.empty() ? 0 : 1;
   out.arrivals.assign(std::size_t(rays), {});
   out.backscatter = Vec3::Zero();
+  out.behind = {0, Vec3::Zero(), Vec3::Zero()};
+  int met = 0;
   for (int r = 0; r < rays; ++r) {
     const auto number = 2 * std::uint64_t(r);
     SurroundingLight::Arrival& arrival = out.arrivals[std::size_t(r)];
     arrival.direction = onCone(theta, azimuth, r, number);
-    strands.shoot(point, fibre * arrival.direction, kFar, meetings, strand);
+    const Vec3 forwards = fibre * arrival.direction;
+    strands.shoot(point, forwards, kFar, meetings, strand);
     if (!meetings.empty()) {
       const StrandMeeting last = meetings.front();
-      const ForwardScattering there = shootForward(
-          strands, hair, point + last.distance * (fibre * arrival.direction), last.strand, toLight, meetings);
-      const double at = last.inclinationRad(toLight);
-      arrival.transmittance = there.transmittance.cwiseProduct(hair.forwardAttenuation(at));
-      arrival.variance = there.variance + hair.forwardVariance(at);
+      const ForwardScattering there =
+          shootForward(strands, hair, point + last.distance * forwards, last.strand, toLight, meetings);
+      const Mat3 local = frameOfFibre(last.tangent).transpose();
+      arrival.transmittance = hair.turned(local * toLight, -(local * forwards), there);
+      arrival.variance = there.variance + hair.forwardVariance(last.inclinationRad(toLight));
     }
-    strands.shoot(point, fibre * onCone(-theta, azimuth + std::numbers::pi, r, number + 1), kFar, meetings,
-                  strand);
+    const Vec3 backwards = fibre * onCone(-theta, azimuth + std::numbers::pi, r, number + 1);
+    strands.shoot(point, backwards, kFar, meetings, strand);
     out.backscatter += hair.backscatterShare(theta, double(meetings.size())) / rays;
+    if (meetings.empty()) continue;
+    const StrandMeeting next = meetings.front();
+    const ForwardScattering there =
+        shootForward(strands, hair, point + next.distance * backwards, next.strand, toLight, meetings);
+    ++met;
+    out.behind.directFraction += there.directFraction;
+    out.behind.transmittance += there.transmittance;
+    out.behind.variance += (1 - there.directFraction) * there.transmittance.cwiseProduct(there.variance);
   }
+  if (met == 0) return;
+  out.behind.directFraction /= met;
+  out.behind.transmittance /= met;
+  const Vec3 scattered = out.behind.transmittance.array() - out.behind.directFraction;
+  out.behind.variance = (out.behind.variance / met).cwiseQuotient(scattered.cwiseMax(1e-12));
 }
 
 Result<FloatImage> renderDualScattering(const DualRenderScene& scene, const DualRenderOptions& options,

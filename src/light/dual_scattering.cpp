@@ -128,6 +128,21 @@ Vec3 DualScattering::shade(const Vec3& wi, const Vec3& wo, const ForwardScatteri
   return out;
 }
 
+Vec3 DualScattering::turned(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving) const {
+  const double at = fibre_.azimuthalInclination(inclinationOf(wi), inclinationOf(wo)),
+               phi = azimuthBetween(wi, wo);
+  const double direct = arriving.directFraction;
+  Vec3 out = Vec3::Zero();
+  for (int p = 0; p < 4; ++p) {
+    if (direct > 0) out += direct * overAzimuth(tables_, tables_.azimuthal, p, at, phi);
+    if (direct < 1) {
+      const Vec3 scattered = (arriving.transmittance.array() - direct).cwiseMax(0.0);
+      out += scattered.cwiseProduct(overAzimuth(tables_, tables_.azimuthalScattered, p, at, phi));
+    }
+  }
+  return kPi * out;
+}
+
 Vec3 DualScattering::backscatterShare(double theta, double behind) const {
   const Vec3 f = forwardAttenuation(theta);
   const Vec3 b = overInclination(tables_.backwardAttenuation, tables_.inclinations, theta);
@@ -142,23 +157,22 @@ Vec3 DualScattering::backscatterShare(double theta, double behind) const {
 Vec3 DualScattering::evaluate(const Vec3& wi, const Vec3& wo, const SurroundingLight& arriving,
                               double h) const {
   if (!wi.allFinite() || !wo.allFinite()) return Vec3::Zero();
-  Vec3 out = Vec3::Zero(), scattered = Vec3::Zero(), spread = Vec3::Zero();
+  Vec3 out = Vec3::Zero();
   const double ray = parameters_.forwardDensity / double(std::max<std::size_t>(1, arriving.arrivals.size()));
   for (const SurroundingLight::Arrival& one : arriving.arrivals) {
     if (!(one.transmittance.maxCoeff() > 0)) continue;
     out +=
         ray * one.transmittance.cwiseProduct(single(one.direction, wo, one.variance.cwiseMin(10.0), false));
-    scattered += ray * one.transmittance;
-    spread += ray * one.transmittance.cwiseProduct(one.variance);
   }
-  const Vec3 returned = parameters_.backwardDensity * arriving.backscatter;
-  if (arriving.directFraction > 0) {
-    out += arriving.directFraction *
-           (fibre_.evaluate(wi, wo, h) + returned.cwiseProduct(back(wi, wo, Vec3::Zero(), false)));
+  if (arriving.directFraction > 0) out += arriving.directFraction * fibre_.evaluate(wi, wo, h);
+  const ForwardScattering& behind = arriving.behind;
+  const Vec3 returned = kReachesOverBehind * parameters_.backwardDensity * arriving.backscatter;
+  if (behind.directFraction > 0) {
+    out += behind.directFraction * returned.cwiseProduct(back(wi, wo, Vec3::Zero(), false));
   }
+  const Vec3 scattered = (behind.transmittance.array() - behind.directFraction).cwiseMax(0.0);
   if (scattered.maxCoeff() > 0) {
-    const Vec3 variance = spread.cwiseQuotient(scattered.cwiseMax(1e-12)).cwiseMin(10.0);
-    out += scattered.cwiseProduct(returned).cwiseProduct(back(wi, wo, variance, true));
+    out += scattered.cwiseProduct(returned).cwiseProduct(back(wi, wo, behind.variance.cwiseMin(10.0), true));
   }
   return out;
 }

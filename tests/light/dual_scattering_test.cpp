@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "coif/base/random.h"
 #include "coif/light/hair_color.h"
 #include "fibre_quadrature.h"
 
@@ -257,11 +258,47 @@ TEST(DualScattering, SurroundingsAreTheStraightPathWhereHairIsEverywhere) {
           {Vec3(std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)), t,
            spread});
     }
+    around.behind = {0, t / kReachesOverBehind, spread};
     const Vec3 even = hair.evaluate(wi, wo, ForwardScattering{0, t, spread}),
                met = hair.evaluate(wi, wo, around, 0);
     // (25) is a sum over nodes two degrees apart, joined by lines.
     EXPECT_LT((met - even).norm(), 2e-3 * even.norm());
   }
+}
+
+TEST(DualScattering, WhatAFibreTurnsIsItsForwardAttenuationOnAverage) {
+  const DualScattering hair{FibreScattering(hairOf(Vec3(0.05, 0.1, 0.2)))};
+  constexpr int steps = 180;
+  for (const double theta : {0.0, 0.6}) {
+    const Vec3 wi = direction(theta, 0);
+    Vec3 even = Vec3::Zero(), afar = Vec3::Zero();
+    for (int s = 0; s < steps; ++s) {
+      const Vec3 wo = direction(-theta, kPi + kPi * ((s + 0.5) / steps - 0.5));
+      even += hair.turned(wi, wo, {0, Vec3::Ones(), Vec3::Zero()}) / steps;
+      afar += hair.turned(wi, wo, {1, Vec3::Ones(), Vec3::Zero()}) / steps;
+    }
+    for (int c = 0; c < 3; ++c) {
+      // Sums over nodes two degrees apart.
+      EXPECT_NEAR(even[c], hair.forwardAttenuation(theta)[c], 2e-3);
+      // Light from afar goes straight on more readily than light that comes from all of the half circle.
+      EXPECT_GT(afar[c], 1.05 * even[c]);
+    }
+  }
+}
+
+// Fibres at random, their cross-sections' centres Poisson's, light along −z: what reaches a point in the hair
+// by what reaches the fibre behind it.
+TEST(DualScattering, TheNextFibreBehindGetsTwoOverPiOfTheLight) {
+  const CounterRandom random(5, 0);
+  double behind = 0;
+  constexpr int points = 200000;
+  for (int i = 0; i < points; ++i) {
+    const auto number = 2 * std::uint64_t(i);
+    const double way = -std::log1p(-random.uniform(number)), phi = kPi * (random.uniform(number + 1) - 0.5);
+    behind += std::exp(-way * std::cos(phi)) / points;
+  }
+  EXPECT_NEAR(1 / behind, kReachesOverBehind,
+              5e-3);  // three standard errors: a deviation of 0.27 over 447, times 2.5
 }
 
 TEST(DualScattering, DensityFactorsEnterOnce) {

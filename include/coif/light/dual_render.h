@@ -52,8 +52,8 @@ ForwardScattering shootForward(const StrandShooter& strands, const DualScatterin
 
 /// The same with the hair around counted: `rays` directions, even over the half cone of the light's
 /// inclination around `fibre` (its frame's columns, the axis first), reach for the fibre that scatters on to
-/// the point, which gets its light along the straight path; as many, away from the light, count the fibres
-/// behind. Into `out`.
+/// the point; as many, away from the light, count the fibres behind and reach for the first. Those fibres get
+/// their light along the straight path. Into `out`.
 void shootAround(const StrandShooter& strands, const DualScattering& hair, const Vec3& point,
                  std::uint32_t strand, const Mat3& fibre, const Vec3& toLight, int rays,
                  const CounterRandom& random, std::vector<StrandMeeting>& meetings, SurroundingLight& out);

@@ -11,6 +11,7 @@
 // const queries are thread-safe.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -68,8 +69,16 @@ struct SurroundingLight {
   };
   double directFraction = 1;
   std::vector<Arrival> arrivals;
-  Vec3 backscatter = Vec3::Ones();  ///< share of Ā_b that the fibres behind return
+  /// What reaches the fibres behind that return light to this one, a mean; and the share of Ā_b that as many
+  /// of them return.
+  ForwardScattering behind{0, Vec3::Zero(), Vec3::Zero()};
+  Vec3 backscatter = Vec3::Ones();
 };
+
+/// Of unscattered light that reaches a point, over what reaches the next fibre behind it: in hair at random
+/// the way to that is exponential, its azimuth even over half the circle, and the mean of 1 / (1 + cos φ) is
+/// 2/π.
+inline constexpr double kReachesOverBehind = std::numbers::pi / 2;
 
 /// Everything as plain arrays, for shaders: texels of three floats (RGB).
 struct DualScatteringTables {
@@ -103,6 +112,9 @@ class DualScattering {
   Vec3 evaluate(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving, double h) const;
   /// The same with the surroundings' light, each arrival scattered from where it comes.
   Vec3 evaluate(const Vec3& wi, const Vec3& wo, const SurroundingLight& arriving, double h) const;
+  /// What a fibre sends towards `wo` of what arrives, as if it went evenly over half the circle: ā_f on
+  /// average.
+  Vec3 turned(const Vec3& wi, const Vec3& wo, const ForwardScattering& arriving) const;
   /// Share of Ā_b that `behind` fibres give, light at this inclination.
   Vec3 backscatterShare(double theta, double behind) const;
   /// Its parts: f_s · cos θ_i of light spread by `variance` (N^G if `scattered`), f_back · cos θ_i.
