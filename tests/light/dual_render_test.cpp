@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "coif/light/path_tracer.h"
 #include "light_fixture.h"
 
@@ -188,6 +191,45 @@ TEST(DualRender, RefusesWhatItCannotDraw) {
   DualRenderOptions options = smallPicture();
   options.maps = maps;  // for one light
   EXPECT_FALSE(renderDualScattering({&*shooter, &hair, sheet.camera, sheet.lights}, options).ok());
+}
+
+TEST(DualRender, ExtremesGiveNumbers) {
+  StrandSet one, broken = wavyStrands(40, 0.01f);
+  addStrand(one, {Vec3f(0, 0.5f, 0.5f), Vec3f(1, 0.5f, 0.5f)}, 0.1f);
+  broken.points[4].x() = NAN;
+  StrandSet heap;  // on top of each other
+  for (int i = 0; i < 60; ++i) addStrand(heap, {Vec3f(0.4f, 0.5f, 0.5f), Vec3f(0.6f, 0.5f, 0.5f)}, 0.02f);
+  DualRenderOptions options = smallPicture();
+  options.width = options.height = 8;
+  options.samplesPerPixel = 4;
+  for (const StrandSet& strands :
+       {StrandSet{}, one, heap, wavyStrands(40, 0.0f), broken, wavyStrands(200, 0.02f)}) {
+    const auto shooter = StrandShooter::create(strands);
+    if (!shooter.ok()) GTEST_SKIP() << shooter.error().text();
+    const bool isBroken = std::ranges::any_of(strands.points, [](const Vec3f& p) { return !p.allFinite(); });
+    EXPECT_EQ(shooter->strandsDropped(), isBroken ? 1u : 0u);
+    for (const double absorption : {0.0, 1e4}) {
+      for (const double roughness : {1e-3, 1.0}) {
+        FibreParameters fibre;
+        fibre.absorption = Vec3(absorption, 0.1, absorption);
+        fibre.longitudinalRoughness = fibre.azimuthalRoughness = roughness;
+        const DualScattering hair{FibreScattering(fibre)};
+        for (const Vec3& eye : {Vec3(0.5, 0.5, 4), Vec3(0.5, 0.5, 0.5)}) {  // before the hair, in it
+          // From the side, and along the hair but for a tenth of a degree.
+          for (const Vec3& toLight : {Vec3(0.3, 1, 1), Vec3(1, 0.0017, 0)}) {
+            Camera camera;
+            camera.eye = eye;
+            camera.target = Vec3(0.5, 0.5, 0.4);
+            Lights lights = Sheet().lights;
+            lights.key.direction = toLight;
+            const auto picture = renderDualScattering({&*shooter, &hair, camera, lights}, options);
+            ASSERT_TRUE(picture.ok()) << picture.error().text();
+            for (const float v : picture->rgba) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

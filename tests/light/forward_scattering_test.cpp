@@ -146,5 +146,38 @@ TEST(ForwardScatteringMap, NoHairIsNoShadow) {
   EXPECT_EQ(at.transmittance, Vec3::Ones());
 }
 
+TEST(ForwardScatteringMap, ExtremesGiveNumbers) {
+  StrandSet broken = wavyStrands(3, 0.05f);
+  broken.points[4].x() = NAN;
+  StrandSet heap;
+  const LightView square = squareView(8);
+  for (int i = 0; i < 500; ++i) addAcross(heap, square, 3, 3, 0.5, 1);
+  const LightView inside = pointLightView(Vec3(0.5, 0.5, 0.5), {Vec3::Zero(), Vec3::Ones()}, 8);
+  for (const double absorption : {0.0, 1e4}) {
+    for (const double roughness : {1e-3, 1.0}) {
+      FibreParameters fibre;
+      fibre.absorption = Vec3(absorption, 0, 1);
+      fibre.longitudinalRoughness = fibre.azimuthalRoughness = roughness;
+      const DualScattering hair{FibreScattering(fibre)};
+      for (const StrandSet& set :
+           {wavyStrands(1, 0.1f), wavyStrands(1, 0.0f), heap, broken, wavyStrands(50, 1e-6f)}) {
+        for (const LightView& view : {square, inside}) {
+          const auto map = ForwardScatteringMap::build(set, hair, view, exact());
+          ASSERT_TRUE(map.ok()) << map.error().text();
+          for (std::uint64_t i = 0; i < 50; ++i) {
+            const CounterRandom random(3, i);
+            const Vec3 p(1.5 * random.uniform(0), random.uniform(1), 1.5 * random.uniform(2));
+            const ForwardScattering at = map->at(p, {Vec3::UnitX(), 0.05});
+            ASSERT_TRUE(at.directFraction >= 0 && at.directFraction <= 1);
+            ASSERT_TRUE(at.transmittance.minCoeff() >= 0 && at.transmittance.maxCoeff() <= 1);
+            ASSERT_TRUE(at.variance.allFinite() && at.variance.minCoeff() >= 0);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(FragmentStream::make(broken, square).value().droppedStrands(), 1u);
+}
+
 }  // namespace
 }  // namespace coif

@@ -359,13 +359,32 @@ TEST_F(PathTracerTest, ExtremesGiveNumbers) {
   scene.lights.points = {{Vec3(0, 0.01, 0.02), Vec3f::Ones()}};  // and a light
   for (const FibreModel model : {FibreModel::Chiang, FibreModel::Marschner, FibreModel::KajiyaKay}) {
     for (const double roughness : {1e-3, 1.0}) {
-      scene.fibre = fibreOf(0.1);
-      scene.fibre.model = model;
-      scene.fibre.longitudinalRoughness = scene.fibre.azimuthalRoughness = roughness;
-      const PathTracePicture picture = trace(scene, small(8, 8));
-      for (const float v : picture.image.rgba) ASSERT_TRUE(std::isfinite(v) && v >= 0);
-      EXPECT_EQ(picture.invalidPaths, 0u);
+      for (const double absorption : {0.0, 0.1, 1e4}) {
+        scene.fibre = fibreOf(absorption);
+        scene.fibre.model = model;
+        scene.fibre.longitudinalRoughness = scene.fibre.azimuthalRoughness = roughness;
+        const PathTracePicture picture = trace(scene, small(8, 8));
+        for (const float v : picture.image.rgba) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+        EXPECT_EQ(picture.invalidPaths, 0u);
+      }
     }
+  }
+}
+
+TEST_F(PathTracerTest, LightAlongTheHairGivesNumbers) {
+  StrandSet one;
+  addStrand(one, {Vec3f(-1, 0, 0), Vec3f(1, 0, 0)}, 0.2f);
+  PathTraceScene scene;
+  scene.strands = &one;
+  scene.camera = farCamera(1);
+  scene.lights.followCamera = false;
+  scene.lights.key.direction = Vec3(std::sin(1.5690509975429023), std::cos(1.5690509975429023), 0);  // 89.9°
+  for (const FibreModel model : {FibreModel::Chiang, FibreModel::Marschner, FibreModel::KajiyaKay}) {
+    scene.fibre = fibreOf(0.1);
+    scene.fibre.model = model;
+    const PathTracePicture picture = trace(scene, small(8, 8));
+    for (const float v : picture.image.rgba) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+    EXPECT_EQ(picture.invalidPaths, 0u);
   }
 }
 
