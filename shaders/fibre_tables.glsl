@@ -87,6 +87,16 @@ vec3 evenAlbedo(float thetaO) {
 #endif
 }
 
+// The sky's light past the hair over the open part that the volume holds: hair dims it by what fibres do not scatter on,
+// 1 − ā_f, and the volume's part is right where that is a sixth (brown hair; docs/preview.md).
+vec3 skyThroughHair(float open) {
+#ifdef SHADING_DUAL
+  return pow(vec3(max(open, 1e-4)), (1.0 - overInclination(0, 0.0)) * 1.2 - 1.0);
+#else
+  return vec3(1);
+#endif
+}
+
 #ifdef SHADING_DUAL
 // f_back · cos θ_i.
 vec3 backScattering(Bearings b, vec3 variance, bool scattered) {

@@ -24,6 +24,7 @@ struct Reach {
   vec3 pastHead;                      // key, fill, rim
   vec2 depths;                        // of hair, fill and rim
   float sky, ground;                  // open part of the upper and of the lower half of the sphere around
+  float skyPastHair;                  // of the upper one, were there no head
 };
 Reach reachOf(vec3 p, uint seed, uint point) {
   Reach reach;
@@ -31,6 +32,7 @@ Reach reachOf(vec3 p, uint seed, uint point) {
   reach.depths = vec2(0);
   reach.sky = 1.0;
   reach.ground = 1.0;
+  reach.skyPastHair = 1.0;
   for (int k = 0; k < 4; ++k) reach.keyDepths[k] = vec4(0), reach.keyWeights[k] = vec4(0);
   reach.keyWeights[0].x = 1.0;
 #ifdef SHADOWS
@@ -45,8 +47,13 @@ Reach reachOf(vec3 p, uint seed, uint point) {
   }
   vec4 all = volumeAt(p), hair = volumeIn(hairVolume, p);
   reach.pastHead = vec3(lit, exp(-max(all.yz - hair.yz, 0.0)));
-  reach.depths = hair.yz;
+  // The volume's fog reaches one and a half cells beyond the hair it stands for: half a cell by filling cells, one by
+  // interpolating. Hair at the surface would lie in its own shadow.
+  float step = 1.5 * volumeLo.w;
+  reach.depths = vec2(volumeIn(hairVolume, p + step * lightDirection[1].xyz).y,
+                      volumeIn(hairVolume, p + step * lightDirection[2].xyz).z);
   reach.sky = all.w;
+  reach.skyPastHair = hair.w;
   reach.ground = all.x;
 #endif
   return reach;
@@ -92,7 +99,7 @@ vec3 shade(StrandPoint p, uint seed, vec3 toEye, Reach reach) {
            reachedThrough(b, vec4(reach.depths[l - 1], 0, 0, 0), vec4(1, 0, 0, 0));
   }
   // Half of the sphere around lights the eye's side of a hair. Where hair hides no part of it, both halves are open.
-  vec3 around = skyColor.rgb * reach.sky + groundColor.rgb * reach.ground;
+  vec3 around = skyColor.rgb * reach.sky * skyThroughHair(reach.skyPastHair) + groundColor.rgb * reach.ground;
   return sum + around / max(reach.sky + reach.ground, 1.0) * evenAlbedo(key.thetaO);
 }
 #endif
