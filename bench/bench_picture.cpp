@@ -17,7 +17,7 @@ struct Settings {
 };
 
 Settings settingsOf(const BenchOptions& options) {
-  return options.quick ? Settings{4000, 64, 16, 48, 8} : Settings{100000, 512, 64, 256, 64};
+  return options.quick ? Settings{4000, 64, 16, 48, 8} : Settings{100000, 512, 12, 256, 40};
 }
 
 ScatteringScene pictureScene(std::size_t hairs, const BenchOptions& options) {
