@@ -120,5 +120,28 @@ TEST(Navigation, ALongLensShowsTheTargetAlikeAndNoPerspective) {
   EXPECT_LT((far.project(beside).px - far.project(higher).px).norm(), 0.1) << "pixels";
 }
 
+TEST(Picking, WhileSomethingIsDraggedWhatWasHiddenStaysSo) {
+  Scene scene = test::sampleScene();
+  PolygonMesh lid;  // over the left half, between the hair and the eye
+  lid.positions = {{-9, -9, 10}, {1, -9, 10}, {1, 9, 10}, {-9, 9, 10}};
+  lid.addFace(std::vector<std::uint32_t>{0, 1, 2, 3});
+  const Surface head(lid);
+  const auto parts = std::make_shared<const PickParts>(pickParts(scene.hairMesh, {}, true));
+  const HairMesh before = scene.hairMesh;
+  const ScreenMesh still(before, parts, above(), 400, 400, &head);
+  for (std::uint32_t v = 0; v < before.vertices().size(); ++v)
+    scene.hairMesh.setPosition(v, before.position(v) + Vec3(9, 0, 0));
+  const ScreenMesh dragged(scene.hairMesh, parts, above(), 400, 400, &head, &still, true);
+  const ScreenMesh after(scene.hairMesh, parts, above(), 400, 400, &head, &still);
+  std::size_t hidden = 0;
+  for (std::uint32_t v = 0; v < before.vertices().size(); ++v) {
+    hidden += !still.pickable(v);
+    EXPECT_EQ(dragged.pickable(v), still.pickable(v));
+    EXPECT_TRUE(after.pickable(v)) << "out from under the lid";
+    EXPECT_EQ(dragged.vertices()[v].px, after.vertices()[v].px);
+  }
+  EXPECT_GT(hidden, 0u);
+}
+
 }  // namespace
 }  // namespace coif

@@ -49,9 +49,10 @@ class ScreenMesh {
   ScreenMesh(const HairMesh& mesh, const Camera& camera, int width, int height,
              const PickOptions& options = {});
   /// The same with parts that are known; `before`, of the same parts and camera, spares the rays of the
-  /// vertices that did not move.
+  /// vertices that did not move; with `asBefore` all rays: what was hidden stays so, while something is
+  /// dragged.
   ScreenMesh(const HairMesh& mesh, std::shared_ptr<const PickParts> parts, const Camera& camera, int width,
-             int height, const Surface* occluder, const ScreenMesh* before = nullptr);
+             int height, const Surface* occluder, const ScreenMesh* before = nullptr, bool asBefore = false);
 
   /// Where each vertex is, by index.
   std::span<const ScreenPoint> vertices() const { return points_; }

@@ -88,7 +88,8 @@ ScreenMesh::ScreenMesh(const HairMesh& mesh, const Camera& camera, int width, in
                  width, height, options.occluder) {}
 
 ScreenMesh::ScreenMesh(const HairMesh& mesh, std::shared_ptr<const PickParts> parts, const Camera& camera,
-                       int width, int height, const Surface* occluder, const ScreenMesh* before)
+                       int width, int height, const Surface* occluder, const ScreenMesh* before,
+                       bool asBefore)
     : mesh_(mesh), camera_(camera), width_(width), height_(height), parts_(std::move(parts)) {
   forward_ = (camera.target - camera.eye).normalized();
   right_ = forward_.cross(camera.up).normalized();
@@ -104,7 +105,7 @@ ScreenMesh::ScreenMesh(const HairMesh& mesh, std::shared_ptr<const PickParts> pa
     points_.push_back(project(at));
     if (points_[v].depth <= 0) pickable_[v] = 0;
     if (!pickable_[v] || occluder == nullptr) continue;
-    if (before != nullptr && before->positions_[v] == at) {
+    if (before != nullptr && (asBefore || before->positions_[v] == at)) {
       seen_[v] = before->seen_[v];
     } else {
       // Short of the vertex by a thousandth, so that roots on the head's own surface stay.
