@@ -14,8 +14,9 @@ const std::string kNoDocument = "no document is open";
 
 std::vector<Action> Studio::makeActions() {
   std::vector<Action> list;
-  for (auto part : {&Studio::fileActions, &Studio::selectActions, &Studio::toolActions, &Studio::viewActions,
-                    &Studio::motionActions, &Studio::pythonActions, &Studio::helpActions}) {
+  for (auto part :
+       {&Studio::fileActions, &Studio::selectActions, &Studio::toolActions, &Studio::viewActions,
+        &Studio::styleActions, &Studio::motionActions, &Studio::pythonActions, &Studio::helpActions}) {
     for (Action& action : (this->*part)()) list.push_back(std::move(action));
   }
   return list;

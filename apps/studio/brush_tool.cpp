@@ -17,6 +17,8 @@ bool followsSurface(const std::string& kind) {
 
 Vec3 BrushTool::placeOf(const Viewport& view) const {
   const Vec2 px = view.mouse();
+  SurfacePoint point;
+  if (over_ != nullptr && over_->intersect(view.camera.eye, view.ray(px), 1e12, point)) return point.position;
   if (const auto hit = view.screen()->hullAt(px)) return *hit;
   // Beside the hair: as deep as the nearest vertex that is seen, or as the stroke was.
   const Vec3 like =
@@ -67,8 +69,9 @@ CommandArguments BrushTool::stroke(const Viewport& view, const BrushSettings& se
   return out;
 }
 
-std::optional<BrushWork> BrushTool::update(const Viewport& view, const Keys& keys, BrushSettings& settings) {
-  tookKeys_ = false;
+std::optional<BrushWork> BrushTool::update(const Viewport& view, const Keys& keys, BrushSettings& settings,
+                                           const Surface* over) {
+  tookKeys_ = false, over_ = over;
   if (resizing_ != Resizing::No) {
     resize(view, keys, settings);
     return std::nullopt;
@@ -79,12 +82,12 @@ std::optional<BrushWork> BrushTool::update(const Viewport& view, const Keys& key
     const bool navigating = view.settings.habit == MouseHabit::Maya && io.KeyAlt;
     if (!view.hovered() || !ImGui::IsMouseClicked(0) || navigating) return std::nullopt;
     const bool turns = settings.kind != "comb" && settings.kind != "grab" && settings.kind != "smooth";
-    inverted_ = io.KeyCtrl && turns, smooths_ = io.KeyShift;
+    inverted_ = io.KeyCtrl && (turns || over != nullptr), smooths_ = io.KeyShift && over == nullptr;
     path_ = {placeOf(view)};
     lastPx_ = view.mouse();
     radius_ = settings.radiusPx * view.unitsPerPixel(path_.front());
   } else if ((view.mouse() - lastPx_).norm() >= kPathStepPx) {
-    const bool onSurface = smooths_ || followsSurface(settings.kind);
+    const bool onSurface = over != nullptr || smooths_ || followsSurface(settings.kind);
     const double depth = (path_.front() - view.camera.eye).dot(view.forward());
     path_.push_back(onSurface ? placeOf(view) : Vec3(view.camera.eye + depth * view.ray(view.mouse())));
     lastPx_ = view.mouse();

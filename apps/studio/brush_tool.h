@@ -20,7 +20,10 @@ class BrushTool {
  public:
   /// Follows mouse and keys. F and Shift + F change size and strength with the mouse until a click; '[' and
   /// ']' the size; Ctrl turns push, pull, inflate and twist round; Shift smooths.
-  std::optional<BrushWork> update(const Viewport& view, const Keys& keys, BrushSettings& settings);
+  /// `over`: strokes lie on this surface, not on the hair; then every Ctrl turns round, and Shift does
+  /// nothing.
+  std::optional<BrushWork> update(const Viewport& view, const Keys& keys, BrushSettings& settings,
+                                  const Surface* over = nullptr);
   void draw(const Viewport& view, const BrushSettings& settings) const;
   bool stroking() const { return !path_.empty(); }
   bool resizing() const { return resizing_ != Resizing::No; }
@@ -34,6 +37,7 @@ class BrushTool {
   void takeKeys(const Viewport& view, const Keys& keys, BrushSettings& settings);
   CommandArguments stroke(const Viewport& view, const BrushSettings& settings) const;
   Vec3 placeOf(const Viewport& view) const;
+  const Surface* over_ = nullptr;
 
   std::vector<Vec3> path_;
   Vec2 lastPx_ = Vec2::Zero(), resizeFrom_ = Vec2::Zero();

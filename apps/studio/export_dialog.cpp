@@ -55,6 +55,10 @@ void Studio::drawExportDialog() {
   if (document_)
     ImGui::TextDisabled("%zu strands; the panel Strands sets how many.",
                         document_->editor.state().strands.count);
+  constexpr std::uint32_t kUnrealPoints = 255;
+  if (document_ && format.extension[1] == 'u' && document_->editor.state().strands.points > kUnrealPoints)
+    ImGui::TextWrapped("Unreal takes %u points a strand at most; these have up to %u.", kUnrealPoints,
+                       document_->editor.state().strands.points);
   const bool goesOn = ImGui::Button("Choose a file ...") || window_.keys().pressed("Enter");
   ImGui::SameLine();
   const bool drops = ImGui::Button("Cancel") || window_.keys().pressed("Escape");

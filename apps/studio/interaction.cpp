@@ -41,6 +41,11 @@ bool growsSelection(const std::string& name) {
   return false;
 }
 
+/// A circle goes with the mouse, and nothing is picked.
+bool strokes(HandTool hand) {
+  return hand == HandTool::Brush || hand == HandTool::Paint || hand == HandTool::Mask;
+}
+
 bool transforms(HandTool hand) {
   return hand == HandTool::Move || hand == HandTool::Rotate || hand == HandTool::Scale;
 }
@@ -53,6 +58,7 @@ CommandArguments Studio::argumentsFor(const CommandInfo& info) const {
   for (const CommandArgument& argument : info.arguments) {
     if (argument.name == "kind" && info.menu == "Select")
       out["kind"] = argument.choices[std::size_t(view_.settings.kind)];
+    if (argument.name == "operator") out["operator"] = chosenOperator();
     if (argument.name == "layer") {
       std::uint32_t layer = 0;
       for (std::uint32_t v : selectedVertices(mesh, document_->editor.state().selection))
@@ -168,8 +174,8 @@ bool Studio::takeTools() {
     followTool();
     return true;
   }
-  if (tools_.hand == HandTool::Brush) {
-    followBrush();
+  if (tools_.hand == HandTool::Brush || tools_.hand == HandTool::Mask) {
+    tools_.hand == HandTool::Brush ? followBrush() : followMask();
     return brush_.tookKeys();
   }
   if (const char* look = view_.settings.axes ? axisAt(view_, window_.scale()) : nullptr;
@@ -192,6 +198,11 @@ bool Studio::takeTools() {
       tools_.hand == HandTool::Paint ? select_.paint(view_, mesh, tools_) : select_.update(view_, mesh);
   for (const Wish& wish : wishes) run(wish.command, wish.arguments);
   return false;
+}
+
+/// A mask is painted on the bare scalp.
+bool Studio::strandsInPicture() const {
+  return view_.settings.showStrands && tools_.hand != HandTool::Mask;
 }
 
 bool Studio::headInPicture() const {
@@ -237,7 +248,7 @@ void Studio::drawOverView() {
   const ImVec2 from = view_.origin(), size = view_.size();
   list.PushClipRect(from, {from.x + size.x, from.y + size.y});
   MeshPainter painter(view_, now, state);
-  painter.paint();
+  tools_.hand == HandTool::Mask ? painter.paintMask(shownMask()) : painter.paint();
   if (tool_ && attempt_) painter.paintChanges(document_->editor.mesh());
   const bool free = !tool_ && view_.hovered() && !ImGui::IsAnyMouseDown();
   std::optional<Constraint> hot;
@@ -246,13 +257,14 @@ void Studio::drawOverView() {
     if (free) hot = gizmo.at(view_.mouse());
     gizmo.draw(hot);
   }
-  if (free && !hot && tools_.hand != HandTool::Brush && tools_.hand != HandTool::Paint)
+  if (free && !hot && !strokes(tools_.hand) && view_.settings.mesh != MeshStyle::Hidden)
     painter.paintHover(under(view_, now));
   if (tool_) tool_->draw(view_);
   if (view_.settings.axes) paintAxes(view_, window_.scale());
   list.PopClipRect();
   select_.draw(view_, tools_);
-  if (tools_.hand == HandTool::Brush && !tool_) brush_.draw(view_, tools_.brush);
+  if ((tools_.hand == HandTool::Brush || tools_.hand == HandTool::Mask) && !tool_)
+    brush_.draw(view_, tools_.brush);
   drawNote();
 }
 

@@ -73,8 +73,8 @@ bool lightBall(LightSettings& light, float size) {
 void Studio::settle(const std::string& command, const CommandArguments& arguments, bool changed) {
   if (changed) pendingCommand_ = command, pendingArguments_ = arguments;
   if (pendingCommand_ != command || ImGui::IsAnyItemActive()) return;
-  pendingCommand_.clear();
-  run(command, pendingArguments_);
+  run(std::exchange(pendingCommand_, {}), pendingArguments_,
+      [this](const std::string&) { pendingStyles_.reset(); });
 }
 
 LookSettings Studio::shownLook() const {

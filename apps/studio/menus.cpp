@@ -85,8 +85,17 @@ void Studio::drawPalette() {
   const bool enter = window_.keys().pressed("Enter");
   const std::string wanted = lower(paletteText_);
   int shown = 0;
-  for (const MenuEntry& entry : entries()) {
-    if (lower(entry.label + " " + entry.name + " " + entry.menu).find(wanted) == std::string::npos) continue;
+  std::vector<MenuEntry> found = entries();
+  std::erase_if(found, [&](const MenuEntry& entry) {
+    return lower(entry.label + " " + entry.name + " " + entry.menu).find(wanted) == std::string::npos;
+  });
+  // What is meant to the letter comes first, and what only mentions it after what begins with it.
+  const auto rank = [&](const MenuEntry& entry) {
+    const std::string label = lower(entry.label);
+    return entry.name == wanted || label == wanted ? 0 : label.starts_with(wanted) ? 1 : 2;
+  };
+  std::ranges::stable_sort(found, {}, rank);
+  for (const MenuEntry& entry : found) {
     if (++shown > 12) break;
     const std::string line = entry.menu + ": " + entry.label + "   " + entry.key;
     if (ImGui::Selectable(line.c_str()) || (enter && shown == 1)) {

@@ -153,6 +153,36 @@ void MeshPainter::paintSelectedFaces() {
   }
 }
 
+void MeshPainter::paintMask(std::span<const double> values) {
+  if (view_.screen() == nullptr || values.size() != mesh_.vertices().size()) return;
+  const auto& points = view_.screen()->vertices();
+  const auto colorAt = [](double value) {
+    const auto mix = [&](int cold, int warm) { return int(std::lround(cold + value * (warm - cold))); };
+    return IM_COL32(mix(40, 250), mix(90, 150), mix(200, 40), 190);
+  };
+  const ImVec2 white = ImGui::GetIO().Fonts->TexUvWhitePixel;
+  for (const Bundle& bundle : mesh_.bundles()) {
+    const auto face = bundle.face(0);
+    double twiceArea = 0;
+    bool seen = false;
+    for (std::uint32_t i = 0; i < bundle.corners; ++i) {
+      const ScreenPoint &a = points[face[i]], &b = points[face[(i + 1) % bundle.corners]];
+      twiceArea += a.px.x() * b.px.y() - a.px.y() * b.px.x();
+      seen = seen || view_.screen()->pickable(face[i]);
+    }
+    if (!seen || twiceArea >= 0) continue;  // y down: it looks away
+    // A fan of triangles, so that colours run from corner to corner.
+    list_.PrimReserve(int(3 * (bundle.corners - 2)), int(bundle.corners));
+    const unsigned first = list_._VtxCurrentIdx;
+    for (std::uint32_t v : face) list_.PrimWriteVtx(at(v), white, colorAt(values[v]));
+    for (std::uint32_t i = 1; i + 1 < bundle.corners; ++i) {
+      for (unsigned corner : {0u, i, i + 1}) list_.PrimWriteIdx(ImDrawIdx(first + corner));
+    }
+    for (std::uint32_t i = 0; i < bundle.corners; ++i)
+      list_.AddLine(at(face[i]), at(face[(i + 1) % bundle.corners]), IM_COL32(20, 22, 26, 150), view_.scale);
+  }
+}
+
 void MeshPainter::paintHover(const Selection& under) {
   for (VertexId id : under.vertices)
     list_.AddCircle(at(mesh_.indexOf(id)), 7 * view_.scale, kHover, 0, 2 * view_.scale);

@@ -12,6 +12,8 @@ class MeshPainter {
   MeshPainter(const Viewport& view, const HairMesh& mesh, const EditState& state);
 
   void paint();
+  /// A mask on the root layer, values by vertex: blue where it is 0, to orange where it is 1.
+  void paintMask(std::span<const double> values);
   /// Pre-selection: what a click would choose.
   void paintHover(const Selection& under);
   /// What a tool would add to `before` (green), or take away (red).

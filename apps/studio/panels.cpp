@@ -38,6 +38,7 @@ void Studio::drawPanels() {
     if (document_) {
       drawAdjustPanel();
       drawStrandPanel();
+      drawStylePanel();
       drawLookPanel();
       drawMotionPanel();
       drawGroupPanel();
@@ -145,7 +146,9 @@ bool Studio::drawArgument(const CommandArgument& argument, CommandArguments& val
 void Studio::drawAdjustPanel() {
   const CommandInfo* info = findCommand(lastCommand_);
   if (info == nullptr || info->arguments.empty() || info->name == "select") return;
-  if (info->name.starts_with("set_") && info->name != "set_group") return;  // it has a panel of its own
+  const bool hasPanel =
+      info->menu == "Style" || (info->name.starts_with("set_") && info->name != "set_group");
+  if (hasPanel) return;
   if (!ImGui::CollapsingHeader((info->label + "###adjust").c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
   CommandArguments values = lastArguments_;
   bool changed = false;

@@ -227,13 +227,15 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   PictureRequest request;
   auto scene = std::make_shared<Scene>(editor.scene());
   if (attempt_ || playedMesh_) scene->hairMesh = shownMesh();
+  scene->styles = shownStyles();
   const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
   request.revision = state != 0 ? hashCombine(editor.revision(), state) : editor.revision();
+  if (pendingStyles_) request.revision = hashCombine(request.revision, pendingStylesNumber_);
   request.scene = std::move(scene);
   request.camera = played_ ? cameraFromHead(view_.camera, played_->pose) : view_.camera;
   request.draft = !fine;
   request.surface = document_->head;
-  request.strands = s.showStrands;
+  request.strands = strandsInPicture();
   request.head = s.showHead && headInPicture();
   request.lights = lightsOf(look.light, editor.scene().upAxis);
   if (played_) request.lights = lightsFromHead(request.lights, played_->pose);
@@ -257,12 +259,13 @@ void Studio::askForPicture(bool moving) {
       hashCombine(editor.revision(), std::uint64_t(view_.width()) * 65536 + std::uint64_t(view_.height()));
   const ViewSettings& s = view_.settings;
   const bool head = s.showHead && headInPicture();
-  key = hashCombine(
-      key, (s.showStrands ? 1u : 0u) + (head ? 2u : 0u) + (s.shadows ? 4u : 0u) + 8u * unsigned(s.shading));
+  key = hashCombine(key, (strandsInPicture() ? 1u : 0u) + (head ? 2u : 0u) + (s.shadows ? 4u : 0u) +
+                             8u * unsigned(s.shading));
   for (const Vec3& v : {view_.camera.eye, view_.camera.target, Vec3(view_.camera.fovDeg, 0, 0)}) {
     for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
   }
   if (attempt_) key = hashCombine(key, attemptNumber_);
+  if (pendingStyles_) key = hashCombine(key, pendingStylesNumber_);
   if (played_) key = hashCombine(key, hashCombine(played_->frame, 1));
   const LookSettings look = shownLook();
   for (double x : {double(look.hairColor.x()), double(look.hairColor.y()), double(look.hairColor.z()),
@@ -324,7 +327,7 @@ bool Studio::frame() {
       const Trace::Span mesh(trace_, "project mesh");
       const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
       view_.update(shownMesh(), hashCombine(document_->editor.revision(), state), document_->editor.state(),
-                   document_->head.get());
+                   document_->head.get(), tool_ != nullptr || brush_.stroking());
     };
     project();
     if (!takeTools()) takeKeys();

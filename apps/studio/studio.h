@@ -86,6 +86,7 @@ class Studio {
   void drawOverView();
   bool turnTable();  ///< true while the model turns by itself
   void drawNote();
+  bool strandsInPicture() const;
   bool headInPicture() const;  ///< else the studio draws it itself, as lines or glass
 
   // Menus, palette and keys (actions.cpp, view_actions.cpp, menus.cpp).
@@ -131,6 +132,18 @@ class Studio {
   void drawHandSettings();
   void drawSelectionPanel();
   void drawStrandPanel();
+  void drawStylePanel();  // style_panel.cpp, with the next ten
+  struct StyleEdit;
+  std::optional<StyleEdit> drawOperator(StyleOperator& op);
+  void drawOperatorList();
+  void drawMaskButtons(const StyleOperator& op);
+  void addOperator(const std::string& kind);
+  std::string chosenOperator() const;  ///< its name; empty: the stack is
+  const StyleStack& shownStyles() const;
+  void followMask();
+  CommandArguments maskArguments(const BrushWork& work) const;
+  std::vector<double> shownMask() const;  ///< of the chosen operator, by vertex
+  std::vector<Action> styleActions();
   void drawLookPanel();  // look_panel.cpp, with the next two
   /// Runs a panel's command once its widgets are let go; until then only the picture shows it.
   void settle(const std::string& command, const CommandArguments& arguments, bool changed);
@@ -217,6 +230,10 @@ class Studio {
   std::string pendingCommand_;  // what a panel's widget that is being dragged will ask for
   CommandArguments pendingArguments_;
   std::optional<LookSettings> pendingLook_;
+  std::optional<StyleStack> pendingStyles_;
+  std::uint64_t pendingStylesNumber_ = 0;
+  std::string chosenOperator_;
+  std::optional<StyleMask> paintedMask_;  // of the stroke that goes on
 
   std::string message_;
   bool messageIsProblem_ = false;

@@ -56,6 +56,7 @@ void slider(const char* id, double& value, float least, float most, const char* 
 void Studio::takeUp(HandTool hand, const std::string& brush) {
   tools_.hand = hand;
   if (!brush.empty()) tools_.brush.kind = brush;
+  paintedMask_.reset();
   say(hand == HandTool::Brush ? brush_.status(tools_.brush) : kHandToolNames[int(hand)]);
 }
 
@@ -117,14 +118,15 @@ void Studio::drawHandTools() {
 }
 
 void Studio::drawHandSettings() {
-  if (tools_.hand == HandTool::Brush) {
+  if (tools_.hand == HandTool::Brush || tools_.hand == HandTool::Mask) {
     BrushSettings& b = tools_.brush;
-    heading("Brush");
+    heading(kHandToolNames[int(tools_.hand)]);
     slider("##size", b.radiusPx, 4, 600, "size %.0f px", true);
     slider("##strength", b.strength, 0, 1, "strength %.2f");
     falloffCombo(b.falloff);
     ImGui::Checkbox("Through", &b.through);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("The brush reaches all that is behind it.");
+    if (tools_.hand == HandTool::Mask) return slider("##value", tools_.maskValue, 0, 1, "towards %.2f");
     ImGui::Checkbox("Only the selection", &b.onlySelected);
     ImGui::Checkbox("Keep out of the head", &b.keepOut);
     return;
@@ -168,7 +170,7 @@ void Studio::drawHandSettings() {
 /// The middle of the selection as numbers; typing moves it.
 void Studio::drawSelectionPanel() {
   const auto middle = document_ ? selectionMiddle() : std::nullopt;
-  if (!middle || tools_.hand == HandTool::Brush) return;
+  if (!middle || tools_.hand == HandTool::Brush || tools_.hand == HandTool::Mask) return;
   heading("Middle");
   for (int i = 0; i < 3; ++i) {
     double value = (*middle)[i];

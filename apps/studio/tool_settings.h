@@ -9,9 +9,9 @@
 namespace coif::studio {
 
 /// What the left button does in the view.
-enum class HandTool { Select, Move, Rotate, Scale, Paint, Brush };
-inline constexpr const char* kHandToolNames[] = {"Select",          "Move", "Rotate", "Scale",
-                                                 "Paint selection", "Brush"};
+enum class HandTool { Select, Move, Rotate, Scale, Paint, Brush, Mask };
+inline constexpr const char* kHandToolNames[] = {"Select",          "Move",  "Rotate",      "Scale",
+                                                 "Paint selection", "Brush", "Paint a mask"};
 
 struct SoftSettings {
   double radius = 0;  ///< scene units; 0: off
@@ -48,6 +48,7 @@ struct ToolSettings {
   SnapSettings snap;
   AxesKind axes = AxesKind::World;  ///< of the gizmo, and of X, Y and Z while a tool runs
   BrushSettings brush;
+  double maskValue = 1;  ///< what a mask is painted towards
   double paintRadiusPx = 24;
 };
 

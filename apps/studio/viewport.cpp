@@ -33,7 +33,7 @@ void Viewport::place(const ImVec2& origin, const ImVec2& size) {
 }
 
 void Viewport::update(const HairMesh& mesh, std::uint64_t revision, const EditState& state,
-                      const Surface* head) {
+                      const Surface* head, bool dragged) {
   std::uint64_t lens = 0;
   for (const Vec3& v : {camera.eye, camera.target, camera.up, Vec3(camera.fovDeg, size_.x, size_.y)}) {
     for (double x : v) lens = hashCombine(lens, std::bit_cast<std::uint64_t>(x));
@@ -44,7 +44,8 @@ void Viewport::update(const HairMesh& mesh, std::uint64_t revision, const EditSt
           : head;
   lens = hashCombine(lens, occluder != nullptr ? 1 : 0);
   const std::uint64_t key = hashCombine(hashCombine(revision, lens), std::uint64_t(settings.showInternal));
-  if (screen_ && key == shownKey_) return;
+  const bool settles = hiddenAsBefore_ && !dragged;
+  if (screen_ && key == shownKey_ && !settles) return;
   shownKey_ = key;
   const bool known = parts_ && partsInternal_ == settings.showInternal && partsHidden_ == state.hidden &&
                      sameTopology(mesh, partsMesh_);
@@ -54,8 +55,10 @@ void Viewport::update(const HairMesh& mesh, std::uint64_t revision, const EditSt
   }
   const bool sameView = known && screen_ && lens == lens_;
   lens_ = lens;
-  screen_ = std::make_unique<ScreenMesh>(mesh, parts_, camera, width(), height(), occluder,
-                                         sameView ? screen_.get() : nullptr);
+  const ScreenMesh* before = sameView && !settles ? screen_.get() : nullptr;
+  hiddenAsBefore_ = dragged && before != nullptr;
+  screen_ = std::make_unique<ScreenMesh>(mesh, parts_, camera, width(), height(), occluder, before,
+                                         hiddenAsBefore_);
 }
 
 Vec2 Viewport::mouse() const {

@@ -42,7 +42,9 @@ class Viewport {
   /// Places the view in the window, in pixels; call first in a frame.
   void place(const ImVec2& origin, const ImVec2& size);
   /// Projects `mesh` anew where it, the camera or the settings changed. `revision` names the mesh's state.
-  void update(const HairMesh& mesh, std::uint64_t revision, const EditState& state, const Surface* head);
+  /// `dragged`: what the head hides is not looked for again until that is over.
+  void update(const HairMesh& mesh, std::uint64_t revision, const EditState& state, const Surface* head,
+              bool dragged);
   /// Orbit, pan and, with `zooms`, the wheel; true while the camera moves.
   bool navigate(bool zooms);
   /// Box of everything, or of the selection when there is one.
@@ -81,7 +83,7 @@ class Viewport {
   std::shared_ptr<const PickParts> parts_;  // of partsMesh_, with these hidden
   HairMesh partsMesh_;
   std::vector<BundleId> partsHidden_;
-  bool partsInternal_ = false;
+  bool partsInternal_ = false, hiddenAsBefore_ = false;
 };
 
 }  // namespace coif::studio
