@@ -19,6 +19,7 @@ PATIENCE = float(os.environ.get("COIF_STUDIO_PATIENCE", 60))  # seconds: softwar
 SIZE = (900, 600)
 LEFT, RIGHT, BAR = 190, 300, 19  # pixels: the panels beside the view and the menu bar above it
 STRANDS = 3000
+PANELS = ("Strands", "Style", "Hair colour", "Light", "Motion", "Groups", "History", "Stages", "Python")  # at the right
 VIEW = np.s_[60:540, 200:590]  # of a picture of the screen
 # FLIP's mean between two pictures of one view of one document, above what their samples' sub-pixel offsets make.
 SAME_PICTURE = 0.02
@@ -62,6 +63,13 @@ def bob(tmp_path_factory):
 def linear(pixels):
     """Linear light of a picture of the screen, 0 … 255."""
     return np.where(pixels <= 0.04045 * 255, pixels / 255 / 12.92, ((pixels / 255 + 0.055) / 1.055) ** 2.4)
+
+
+def operator_kinds():
+    """Kinds of style operators, as the registry has them."""
+    import coif
+
+    return [kind["kind"] for kind in coif.style_kinds()]
 
 
 class Studio:
@@ -169,6 +177,11 @@ class Studio:
         for _ in range(abs(steps)):
             self.tool("click", 4 if steps > 0 else 5)
             time.sleep(0.08)
+
+    def panel(self, name):
+        """Opens or closes a panel at the right, those above it being closed."""
+        self.click(self.size[0] - RIGHT + 110, 37 + 24 * PANELS.index(name))
+        time.sleep(0.2)
 
     def middle(self):
         """The middle of the view, where framing puts things."""

@@ -17,7 +17,7 @@ def test_panels_are_dragged_wider_and_stay_so(studio):
     studio.drag((width - RIGHT, 400), (width - RIGHT + 70, 400))
     studio.drag((LEFT + 60, 200), (20, 200))  # an edge stops before its panel is gone
     studio.drag((180, 200), (LEFT + 40, 200))
-    studio.click(width - RIGHT + 110, 60)  # opens a panel: hair colour
+    studio.click(width - RIGHT + 110, 85)  # opens a panel: hair colour
     wide = studio.settled("panels-wide")
     studio.key("ctrl+q")
     studio.wait(lambda: studio.process.poll() == 0, "the end")
