@@ -57,29 +57,38 @@ class Book:
         return scene
 
 
-def outward(positions, up=1):
-    """Unit vectors from the middle of the roots, level."""
-    out = positions - positions.mean(axis=0)
-    out[:, up] = 0
-    return out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-9)
+def forehead(mesh, share):
+    """Root vertices in front: that share of them that lies farthest to the front."""
+    roots = mesh.layers == 0
+    return mesh.vertex_ids[roots & (mesh.positions[:, 2] > np.percentile(mesh.positions[roots, 2], 100 - share))]
 
 
 def first(book):
-    editor = book.open(book.scene(None, azimuth=35))
+    editor = book.open(book.scene(None, strands=60000, azimuth=35))
     editor.act("kind_face")
     editor.select_all(kind="face")
     book.shot("first-1-roots")
-    for distance, droop in ((1.2, 0), (2.0, -1.6), (2.5, -2.4), (2.5, -2.5)):
-        editor.extrude(distance=distance)
-        if droop:
-            editor.translate(by=(0, droop, 0))
-    editor.smooth(strength=0.5, steps=2)
-    book.shot("first-2-extruded")
+    editor.extrude(distance=14, layers=10, bend=0.35)
     editor.push_out(margin=0.02)
-    editor.drape(seconds=3)
+    editor.smooth(strength=0.5, steps=2)
     editor.push_out(margin=0.02)
     editor.select_none()
-    book.shot("first-3-draped")
+    editor.act("frame_all")
+    book.shot("first-2-extruded")
+    editor.set_look(color=(0.28, 0.13, 0.06))
+    editor.add_operator(kind="clump")
+    editor.set_operator(operator="Clump", parameter="amount", value=0.5)
+    editor.add_operator(kind="frizz")
+    editor.add_operator(kind="length", name="Fringe")
+    editor.set_operator(operator="Fringe", parameter="scale", value=0.5)
+    mesh = editor.mesh
+    editor.set_mask(operator="Fringe", vertices=mesh.vertex_ids[mesh.layers == 0], values=[0])
+    editor.set_mask(operator="Fringe", vertices=forehead(mesh, 15), values=[1])
+    editor.act("hand_mask")
+    book.shot("first-3-mask")
+    editor.act("hand_select")
+    editor.act("mesh_hidden")
+    book.shot("first-4-done")
     book.close()
 
 
@@ -98,11 +107,8 @@ def bun(book):
 def fringe(book):
     editor = book.open(book.scene("bob", azimuth=10))
     mesh = editor.mesh
-    # The columns over the forehead: their roots lie in front and high.
-    roots = mesh.layers == 0
-    front = roots & (mesh.positions[:, 2] > np.percentile(mesh.positions[roots, 2], 75))
     editor.act("kind_vertex")
-    editor.select(vertices=mesh.vertex_ids[front])
+    editor.select(vertices=forehead(mesh, 25))
     editor.select_columns()
     book.shot("fringe-1-selected")
     chosen = np.isin(mesh.vertex_ids, editor.selected_vertices) & (mesh.layers > 2)
@@ -115,22 +121,15 @@ def fringe(book):
 
 
 def curls(book):
-    scene = book.scene("long", azimuth=30)
-    editor = book.open(scene)
-    mesh = editor.mesh
-    layers = mesh.layer_count
+    editor = book.open(book.scene("long", azimuth=30))
     book.shot("curls-1-straight")
-    column = mesh.positions.copy()
-    for layer in range(3, layers):
-        here = mesh.layers == layer
-        turn = 1.9 * (layer - 3)
-        out = outward(column[here])
-        side = np.cross(out, (0, 1, 0))
-        grow = 0.35 * min(1, (layer - 2) / 3)
-        offsets = grow * (np.cos(turn) * side + np.sin(turn) * out)
-        editor.displace(vertices=mesh.vertex_ids[here], offsets=offsets)
-    editor.select_none()
-    book.shot("curls-2-waves")
+    editor.add_operator(kind="clump")
+    editor.add_operator(kind="curl")
+    editor.set_operator(operator="Curl", parameter="radius", value=0.9)
+    editor.set_ramp(operator="Curl", points=[0.1, 0, 0.55, 1])
+    editor.add_operator(kind="flyaways")
+    editor.act("mesh_hidden")
+    book.shot("curls-2-curls")
     book.close()
 
 
@@ -195,6 +194,8 @@ def main():
         with os.fdopen(read) as numbers:
             os.environ["DISPLAY"] = f":{numbers.readline().strip()}"
         os.environ["XDG_STATE_HOME"] = str(folder / "state")
+        (folder / "state/coif").mkdir(parents=True)
+        (folder / "state/coif/studio.json").write_text('{"open": {"Style": true}}')
         os.environ["COIF_STUDIO"] = str((arguments.bin / "coif-studio").resolve())
         try:
             subprocess.run([arguments.bin / "coif", "-q", "example-head", "-o", folder / "head.obj"], check=True)
