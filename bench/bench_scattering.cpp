@@ -422,13 +422,15 @@ void addMethods(const ScatteringScene& scene, const StrandShooter& shooter, int 
   report.plots.push_back(std::move(bytes));
 }
 
-/// How the mean colour depends on the density factors.
+/// How the picture depends on the density factors.
 BenchPlot densityPlot(const ScatteringScene& scene, const StrandShooter& shooter, int truthSamples,
                       const BenchOptions& options) {
   BenchPlot plot;
   plot.name = "scattering-density";
   plot.title = "Density factors on the blond bob";
-  plot.errorUnit = "relative MSE to the path tracer";
+  plot.errorUnit = "mean FLIP to the path tracer";
+  plot.against = "density factors d_f, d_b";
+  plot.curves = true;
   plot.truth = std::to_string(truthSamples) + " samples a pixel";
   const FibreParameters fibre = fibreOf(HairColor::Blond);
   const FloatImage truth = traced(scene, fibre, truthSamples, options).image;
@@ -438,8 +440,12 @@ BenchPlot densityPlot(const ScatteringScene& scene, const StrandShooter& shooter
       const DualScattering hair(FibreScattering(fibre), how.dual);
       const Stopwatch watch;
       const FloatImage picture = dualPicture(scene, shooter, hair, 8, 0, options);
-      plot.samples.push_back(sampleOf(formulas == DualFormulas::Printed ? "printed" : "corrected", scene.name,
-                                      shortNumber(density), distanceTo(picture, truth), watch.seconds()));
+      const Distance distance = distanceTo(picture, truth);
+      BenchSample sample = sampleOf(formulas == DualFormulas::Printed ? "printed" : "corrected", scene.name,
+                                    shortNumber(density), distance, watch.seconds());
+      sample.error = distance.flip;
+      sample.measures = {{plot.against, density}};
+      plot.samples.push_back(std::move(sample));
     }
   }
   return plot;

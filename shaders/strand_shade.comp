@@ -47,9 +47,9 @@ Reach reachOf(vec3 p, uint seed, uint point) {
   }
   vec4 all = volumeAt(p), hair = volumeIn(hairVolume, p);
   reach.pastHead = vec3(lit, exp(-max(all.yz - hair.yz, 0.0)));
-  // The volume's fog reaches one and a half cells beyond the hair it stands for: half a cell by filling cells, one by
-  // interpolating. Hair at the surface would lie in its own shadow.
-  float step = 1.5 * volumeLo.w;
+  // The volume's fog reaches about two cells beyond the hair it stands for: half a cell by filling cells, one by
+  // interpolating, the rest by sweeping. Hair at the surface would lie in its own shadow (docs/preview.md).
+  float step = 2.0 * volumeLo.w;
   reach.depths = vec2(volumeIn(hairVolume, p + step * lightDirection[1].xyz).y,
                       volumeIn(hairVolume, p + step * lightDirection[2].xyz).z);
   reach.sky = all.w;
