@@ -6,7 +6,7 @@ layout(std430, binding = 6) writeonly buffer Answers { vec2 answers[]; };   // T
 layout(location = 0) uniform int count;
 layout(location = 1) uniform int bilinear;
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
   if (i >= uint(count)) return;
   Taps taps = mapTaps(points[i].xyz, vec2(0), bilinear == 1);
   answers[i] = vec2(dot(taps.weights, exp(-taps.depths)), taps.depths.x);

@@ -44,8 +44,6 @@ void EyeLayers::draw(const EyeScene& scene) const {
     const int endRow = std::min(firstRow + rows_, height_);
     addUp(scene, firstRow, endRow);
     compose(scene, firstRow, endRow);
-    if (endRow < height_)
-      glFinish();  // llvmpipe fills the buffers of the next rows before it has drawn from them
   }
 }
 

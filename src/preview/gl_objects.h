@@ -90,22 +90,19 @@ inline Texture makeTexture2d(GLenum format, int width, int height, int samples =
   return Texture(name);
 }
 
-/// Fills a buffer of 32-bit numbers.
-inline void fill(const Buffer& buffer, std::uint32_t value) {
-  glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
-}
-
 /// Fills a texture, all layers of an array, by drawing: drivers fill by glClearTexImage at a gigabyte a
-/// second.
+/// second. Waits for what shaders wrote into it.
 inline void clearColor(const Texture& texture, const float (&value)[4]) {
   const Framebuffer target = makeFramebuffer();
   glNamedFramebufferTexture(target.name(), GL_COLOR_ATTACHMENT0, texture.name(), 0);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, value);
 }
 inline void clearIntegers(const Texture& texture) {
   const GLuint nothing[4] = {0, 0, 0, 0};
   const Framebuffer target = makeFramebuffer();
   glNamedFramebufferTexture(target.name(), GL_COLOR_ATTACHMENT0, texture.name(), 0);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
   glClearNamedFramebufferuiv(target.name(), GL_COLOR, 0, nothing);
 }
 inline void clearDepth(const Texture& texture, float value) {

@@ -210,8 +210,7 @@ void HairMap::drawWholeRange(const Programs& programs) {
   wholeRange_ = makeBuffer(std::span<const std::uint32_t>(nothing));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, wholeRange_.name());
   glUseProgram(programs[ProgramId::MapRange]);
-  const GLuint groups = GLuint(view_.size + 7) / 8;
-  glDispatchCompute(groups, groups, 1);
+  dispatchSquare(view_.size);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -226,8 +225,7 @@ void HairMap::drawClusters(const Programs& programs, const StrandBuffers& lines)
   glBindTextureUnit(6, amounts.name());
   glBindImageTexture(0, layers_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glUseProgram(programs[ProgramId::MapClusters]);
-  const GLuint groups = GLuint(view_.size + 7) / 8;
-  glDispatchCompute(groups, groups, 1);
+  dispatchSquare(view_.size);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(5, 0);
   glBindTextureUnit(6, 0);
@@ -253,7 +251,7 @@ std::vector<HairMap::Answer> HairMap::query(const Programs& programs, std::span<
   glUseProgram(programs(ProgramSource{"map_query.comp", "", mapDefines(options_)}));
   glUniform1i(0, int(points.size()));
   glUniform1i(1, options_.filter ? 1 : 0);
-  glDispatchCompute(GLuint(points.size() + 63) / 64, 1, 1);
+  dispatchInvocations(points.size());
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<Answer> answers(points.size());
   glGetNamedBufferSubData(out.name(), 0, GLsizeiptr(answers.size() * sizeof(Answer)), answers.data());

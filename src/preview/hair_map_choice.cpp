@@ -28,7 +28,7 @@ TransmittanceBound HairMap::bound(const Programs& programs) const {
   bind();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, out.name());
   glUseProgram(programs[ProgramId::MapBound]);
-  glDispatchCompute(groups, groups, 1);
+  dispatchSquare(view_.size);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(out.name(), 0, GLsizeiptr(sums.size() * sizeof(Vec4f)), sums.data());
   double weighted = 0, weight = 0, worst = 0;

@@ -60,8 +60,7 @@ std::vector<ProgramSource> walkPrograms() {
 
 void HairMap::resolve(const Programs& programs, const ProgramSource& source) const {
   glUseProgram(programs(source));
-  const GLuint groups = GLuint(view_.size + 7) / 8;
-  glDispatchCompute(groups, groups, 1);
+  dispatchSquare(view_.size);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

@@ -53,6 +53,9 @@ struct PreviewSession::Impl {
   Box box() const;      ///< of head, hair and overlay
   Box seenBox() const;  ///< with the ground
   void upload(Picture& picture);
+  /// Brings strands to a plan with as little work as may be.
+  void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan, const char* name,
+              const PreviewOptions& options, Topology topology, Picture& picture);
   void makeEyeStrands(const PreviewOptions& options, const View& view, Picture& picture,
                       const Context& context);
   void makeShadowStrands(const PreviewOptions& options, const FrameData& frame, Picture& picture,

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "preview/session_impl.h"
+#include "preview/stages.h"
 
 namespace coif {
 namespace {
@@ -48,31 +49,6 @@ Box finiteBox(const HairMesh& mesh) {
   }
   return points.empty() ? Box{} : bounds(points);
 }
-
-StageReport& report(Picture& picture, const char* name, StageState state, std::string reason,
-                    std::uint64_t bytes = 0) {
-  StageReport& stage = picture.stages.emplace_back();
-  stage.name = name;
-  stage.state = state;
-  stage.reason = std::move(reason);
-  stage.bytes = bytes;
-  return stage;
-}
-
-/// Times a stage; with `measure` the GPU is waited for.
-class StageTimer {
- public:
-  StageTimer(StageReport& stage, bool measure) : stage_(stage), measure_(measure) {}
-  ~StageTimer() {
-    if (measure_) glFinish();
-    stage_.seconds = watch_.seconds();
-  }
-
- private:
-  StageReport& stage_;
-  bool measure_;
-  Stopwatch watch_;
-};
 
 DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
   DetailOptions detail;
@@ -171,14 +147,11 @@ void PreviewSession::Impl::upload(Picture& picture) {
          first ? "new strands" : "the strands' roots did not change", picture.uploaded.strands);
 }
 
-namespace {
-
-/// Brings strands to a plan with as little work as may be.
-void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan, const char* name, bool keep,
-            bool measure, const HairModel& model, const HairBuffers& hair, const Programs& programs,
-            Topology topology, Picture& picture) {
+void PreviewSession::Impl::follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan,
+                                  const char* name, const PreviewOptions& options, Topology topology,
+                                  Picture& picture) {
   const bool same = strands != nullptr && strands->plan() == plan;
-  if (keep && same && !old) {
+  if (options.keep && same && !old) {
     report(picture, name, StageState::Reused, "the same strands with the same points: " + strandsText(plan));
     return;
   }
@@ -187,20 +160,19 @@ void follow(std::unique_ptr<StrandBuffers>& strands, bool& old, DetailPlan plan,
                               : !same            ? "another level of detail"
                               : old              ? "the hair mesh moved"
                                                  : "asked for");
-  const StageTimer timer(stage, measure);
+  const StageTimer timer(stage, options.measure);
   stage.notes.push_back(strandsText(plan));
   if (same) {
-    strands->make(model, hair, programs);
+    strands->make(hair->model, *hairBuffers, *device->programs);
   } else {
     picture.uploaded.plan += plan.bytes();
     strands.reset();  // first, so that both need not fit
-    strands = std::make_unique<StrandBuffers>(model, hair, programs, std::move(plan), topology);
+    strands = std::make_unique<StrandBuffers>(hair->model, *hairBuffers, *device->programs, std::move(plan),
+                                              topology);
   }
   stage.bytes = strands->bytes();
   old = false;
 }
-
-}  // namespace
 
 void PreviewSession::Impl::makeEyeStrands(const PreviewOptions& options, const View& view, Picture& picture,
                                           const Context& context) {
@@ -215,8 +187,7 @@ void PreviewSession::Impl::makeEyeStrands(const PreviewOptions& options, const V
                             " strands were left out: values not finite or fewer than two points");
   }
   const Topology topology = plan.lines ? Topology::Lines : Topology::Ribbons;
-  follow(eyeStrands, eyeOld, std::move(plan), "strands for the eye", options.keep, options.measure,
-         hair->model, *hairBuffers, *device->programs, topology, picture);
+  follow(eyeStrands, eyeOld, std::move(plan), "strands for the eye", options, topology, picture);
 }
 
 void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, const FrameData& frame,
@@ -225,8 +196,16 @@ void PreviewSession::Impl::makeShadowStrands(const PreviewOptions& options, cons
   shadowDetail = mapDetailOf(options, *device);
   DetailPlan plan = makePlan(
       hair->model, shadowDetail, [texel](const Vec3&) { return texel; }, context);
-  follow(shadowStrands, shadowOld, std::move(plan), "strands for the maps", options.keep, options.measure,
-         hair->model, *hairBuffers, *device->programs, Topology::Segments, picture);
+  follow(shadowStrands, shadowOld, std::move(plan), "strands for the maps", options, Topology::Segments,
+         picture);
+}
+
+const Fog& PreviewSession::Impl::theFog() {
+  if (fog == nullptr) {
+    fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
+    openness.reset();
+  }
+  return *fog;
 }
 
 Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer,
@@ -319,152 +298,6 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   picture.uploaded.frame += sizeof frame * std::size_t(options.subframes + 1);
   picture.seconds = watch.seconds();
   return picture;
-}
-
-void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture) {
-  if (!hair) return;
-  StageReport& stage = report(picture, "shading", StageState::Ran, "light, hair or camera may have moved");
-  const StageTimer timer(stage, options.measure);
-  if (sliced) {
-    stage.state = StageState::Skipped;
-    stage.reason = "half-angle slices are lit as they are drawn";
-    return;
-  }
-  useShading(options, false, stage);
-  eyeStrands->dispatchPoints();
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-void PreviewSession::Impl::useShading(const PreviewOptions& options, bool slices, StageReport& stage) {
-  constexpr int kMostLookUps = 2;  // a point; hairs that overlap make the mean of more
-  constexpr double kDark = 0.01;   // of the light goes on through a hair: nothing is left after two
-  const bool tables = options.shading != PreviewShading::Studio;
-  if (tables) {
-    const FibreParameters wanted = fibreOf(options);
-    if (fibre == nullptr || !sameFibre(fibre->fibre(), wanted)) fibre = std::make_unique<FibreTables>(wanted);
-    fibre->bind();
-  }
-  const bool asked = options.shading == PreviewShading::DualScattering;
-  const bool multiple = asked && !(options.leaveOut && fibre->mostForward() < kDark);
-  if (asked && !multiple) stage.notes.push_back("dark hair: no multiple scattering");
-  const bool grey = tables && options.leaveOut && fibre->grey();
-  if (grey) stage.notes.push_back("grey hair: one channel");
-  shadows->bindForHair();
-  glUseProgram((*device->programs)(
-      shadeProgram(shadows->map().options(), {shadowsHaveHair, tables, multiple, grey, slices})));
-  glUniform1i(1, std::min(options.subframes, kMostLookUps));
-}
-
-Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& view, Picture& picture) {
-  if (!hair) return {};
-  const PreviewTransparency method = chooseTransparency(options, view, picture);
-  if (eye == nullptr || eye->method() != method || targetWidth != options.width ||
-      targetHeight != options.height) {
-    eye.reset();
-    COIF_ASSIGN(EyePass made, EyePass::create(method, options.width, options.height));
-    eye = std::make_unique<EyePass>(std::move(made));
-  }
-  cameraMap.reset();
-  if (method == PreviewTransparency::DepthLayers) {
-    constexpr double kFirstLayer = 0.25;  // optical depths: eight linear layers then reach nine
-    eyeLayerSize = kFirstLayer / std::max(meanExtinction(theFog()), 1e-3 / box().diagonal());
-  }
-  if (method != PreviewTransparency::OccupancyOrdered) return {};
-  follow(eyeLines, eyeLinesOld, eyeStrands->plan(), "strands for the camera's map", options.keep,
-         options.measure, hair->model, *hairBuffers, *device->programs, Topology::Segments, picture);
-  StageReport& stage = report(picture, "camera's map", StageState::Ran, "every picture");
-  const StageTimer timer(stage, options.measure);
-  VisibilityOptions occupancy;
-  occupancy.method = VisibilityMethod::Occupancy;
-  COIF_ASSIGN(HairMap map,
-              HairMap::make(*device->programs, eyeLines.get(), viewOfCamera(view), 1, occupancy));
-  cameraMap = std::make_unique<HairMap>(std::move(map));
-  stage.bytes = cameraMap->bytes();
-  return {};
-}
-
-PreviewTransparency PreviewSession::Impl::chooseTransparency(const PreviewOptions& options, const View& view,
-                                                             Picture& picture) const {
-  if (options.leaveOut && options.transparency != PreviewTransparency::Opaque && leastCoverage(view) >= 1) {
-    report(picture, "transparency", StageState::Skipped,
-           "every hair is wider than a pixel: the depth buffer decides");
-    return PreviewTransparency::Opaque;
-  }
-  if (options.transparency != PreviewTransparency::Auto) return options.transparency;
-  const bool layers = device->gl->software() && eyeStrands->plan().thin;
-  return layers ? PreviewTransparency::DepthLayers : PreviewTransparency::Stochastic;
-}
-
-const Fog& PreviewSession::Impl::theFog() {
-  if (fog == nullptr) {
-    fog = std::make_unique<Fog>(makeFog(hair->model.coarse, head.get()));
-    openness.reset();
-  }
-  return *fog;
-}
-
-// Of a pixel by the thinnest of the coarse strands' points, without the ribbon's own widening.
-double PreviewSession::Impl::leastCoverage(const View& view) const {
-  double least = INFINITY;
-  const CoarseStrands& coarse = hair->model.coarse;
-  for (const CoarseStrands::Point& p : coarse.points) {
-    least = std::min(least, double(p.width) / view.pixelAt(p.position.cast<double>()));
-  }
-  return least * eyeStrands->plan().widthScale / std::max(coarse.scale, 1e-300);
-}
-
-Status PreviewSession::Impl::drawSubframe(const PreviewOptions& options, const View& view, bool first) {
-  constexpr double kShoulder = 0.25;
-  const Programs& programs = *device->programs;
-  const bool studio = options.shading == PreviewShading::Studio;
-  targets->begin();
-  if (!options.transparentBackground) {
-    glUseProgram(programs[ProgramId::Backdrop]);
-    glBindVertexArray(device->empty.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-  }
-  glEnable(GL_DEPTH_TEST);
-  if (headBuffers != nullptr) {
-    shadows->bindForHead();
-    glUseProgram(programs(headProgram(shadows->map().options(), studio)));
-    headBuffers->draw();
-  }
-  if (ground) {
-    shadows->bindForHead();
-    drawGround(programs, device->empty, *ground, groundRadius(*ground, box(), camera.eye),
-               shadows->map().options());
-  }
-  if (hair) {
-    const EyeScene scene{programs,      *eyeStrands, headBuffers.get(), cameraMap.get(), *targets,
-                         device->empty, view,        eyeLayerSize};
-    COIF_TRY(sliced ? drawSlices(options, scene, first) : eye->draw(scene));
-  }
-  if (overlayPass != nullptr) overlayPass->draw(programs);
-  targets->accumulate(programs, device->empty, studio ? kShoulder : 0);
-  return {};
-}
-
-Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& view, FrameData& frame,
-                                  Buffer& frameBuffer, Picture& picture, const Context& context) {
-  if (targets == nullptr || targetWidth != options.width || targetHeight != options.height) {
-    targets.reset();
-    COIF_ASSIGN(FrameTargets made, FrameTargets::create(options.width, options.height));
-    targets = std::make_unique<FrameTargets>(std::move(made));
-    targetWidth = options.width, targetHeight = options.height;
-  }
-  targets->clear();
-  StageReport& stage = report(picture, "picture", StageState::Ran, "every picture is drawn");
-  const StageTimer timer(stage, options.measure);
-  for (int k = 0; k < options.subframes; ++k) {
-    if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
-    frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
-    frame.viewport.z() = float(k);
-    glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
-    COIF_TRY(drawSubframe(options, view, k == 0));
-    context.report("picture", double(k + 1) / options.subframes);
-  }
-  picture.image = targets->finish(*device->programs, device->empty, options.subframes);
-  return {};
 }
 
 }  // namespace coif

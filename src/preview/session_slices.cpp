@@ -1,5 +1,6 @@
 // Half-angle slices in a session: light and eye in turns.
 #include "preview/session_impl.h"
+#include "preview/stages.h"
 
 namespace coif {
 
@@ -7,16 +8,12 @@ Status PreviewSession::Impl::makeSlices(const PreviewOptions& options, const Vie
                                         const FrameData& frame, Picture& picture) {
   sliced.reset();
   if (!hair || eye->method() != PreviewTransparency::HalfAngleSlices) return {};
-  const Stopwatch watch;
+  StageReport& stage = report(picture, "half-angle slices", StageState::Ran, "every picture");
+  const StageTimer timer(stage, options.measure);
   COIF_ASSIGN(SlicedHair made, SlicedHair::make(*device->programs, *eyeStrands, view,
                                                 frame.lightDirection[0].head<3>().cast<double>(),
                                                 shadows->map().view(), box(), options.halfAngleSlices));
   sliced = std::make_unique<SlicedHair>(std::move(made));
-  StageReport& stage = picture.stages.emplace_back();
-  stage.name = "half-angle slices";
-  stage.state = StageState::Ran;
-  stage.reason = "every picture";
-  stage.seconds = watch.seconds();
   stage.bytes = sliced->bytes();
   stage.notes.push_back(std::string(sliced->frontToBack() ? "front to back" : "back to front") + ", " +
                         std::to_string(sliced->slices()) + " slices");

@@ -33,19 +33,6 @@ Slicing sliceBox(const Box& box, const View& view, const Vec3& towardsLight, int
   return slicing;
 }
 
-void dispatchGroups(std::size_t groups) {
-  constexpr std::size_t kMostGroups = 32768;
-  const std::size_t x = std::min(groups, kMostGroups);
-  glDispatchCompute(GLuint(x), GLuint((groups + x - 1) / x), 1);
-}
-
-// The grid of work groups is a rectangle: a few beyond the last point count nothing.
-std::size_t dispatchedGroups(std::size_t groups) {
-  constexpr std::size_t kMostGroups = 32768;
-  const std::size_t x = std::min(groups, kMostGroups);
-  return x * ((groups + x - 1) / x);
-}
-
 }  // namespace
 
 std::vector<ProgramSource> SlicedHair::sortPrograms() {
@@ -72,7 +59,7 @@ Result<SlicedHair> SlicedHair::make(const Programs& programs, const StrandBuffer
   if (points == 0) return hair;
   const Slicing slicing = sliceBox(box, view, towardsLight, slices);
   hair.frontToBack_ = slicing.frontToBack;
-  const std::size_t wanted = (points + kGroup - 1) / kGroup, groups = dispatchedGroups(wanted);
+  const std::size_t wanted = (points + kGroup - 1) / kGroup, groups = groupsDispatched(wanted);
   const auto run = [&](const ProgramSource& source) {
     glUseProgram(programs(source));
     strands.bindPoints();
@@ -134,7 +121,7 @@ void SlicedHair::shade(int slice) const {
   glBindTextureUnit(3, light_.name());
   glUniform1ui(0, GLuint(2 * count(slice)));
   glUniform1ui(2, GLuint(first(slice)));
-  dispatchGroups((2 * std::size_t(count(slice)) + 63) / 64);
+  dispatchInvocations(2 * std::size_t(count(slice)));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

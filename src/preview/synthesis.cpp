@@ -10,15 +10,9 @@ namespace {
 constexpr std::size_t kPackedPoint = 32, kColumnSample = 32, kShade = 8;  // bytes, as shaders/ have them
 constexpr std::size_t kAlign =
     32;  // points: a batch starts at a multiple of 256 bytes, enough for every driver
-constexpr GLuint kGroup = 64, kMostGroups = 32768;
 
 void bind(GLuint binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name());
-}
-
-void dispatch(std::size_t groups) {
-  const auto x = GLuint(std::min<std::size_t>(groups, kMostGroups));
-  if (x > 0) glDispatchCompute(x, GLuint((groups + x - 1) / x), 1);
 }
 
 std::size_t blockSize() {
@@ -47,17 +41,6 @@ Vec3f tangentFrom(std::uint32_t bits) {
 }
 
 }  // namespace
-
-void dispatchInvocations(std::size_t count) {
-  dispatch((count + kGroup - 1) / kGroup);
-}
-
-Buffer emptyBuffer(std::size_t bytes, GLbitfield flags) {
-  GLuint name = 0;
-  glCreateBuffers(1, &name);
-  glNamedBufferStorage(name, GLsizeiptr(std::max<std::size_t>(bytes, 16)), nullptr, flags);
-  return Buffer(name);
-}
 
 std::size_t mostBatchPoints() {
   return std::min<std::size_t>(blockSize() / kPackedPoint, std::size_t{1} << 30) / kAlign * kAlign;
@@ -124,7 +107,7 @@ void StrandBuffers::makeColumns(const HairModel& model, const HairBuffers& hair,
   bind(2, shares_), bind(5, parameters_), bind(6, columns_);
   glUniform1ui(0, GLuint(plan_.shares.size()));
   glUniform1i(1, int(model.knots));
-  dispatch(plan_.shares.size());
+  dispatchGroups(plan_.shares.size());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "preview/compute.h"
 #include "preview/detail.h"
-#include "preview/gl_objects.h"
 #include "preview/hair_model.h"
 #include "preview/program.h"
 
@@ -68,12 +68,6 @@ class StrandBuffers {
   Buffer shares_, parameters_, columns_, points_, shades_, indices_;
   VertexArray array_;
 };
-
-/// The bound program, in groups of 64: gl_WorkGroupID.y counts whole rows of groups.
-void dispatchInvocations(std::size_t count);
-
-/// A buffer of that many bytes, undefined.
-Buffer emptyBuffer(std::size_t bytes, GLbitfield flags = 0);
 
 /// Most points a batch may have with this driver.
 std::size_t mostBatchPoints();

@@ -137,7 +137,7 @@ TEST_F(EyeLayers, IsChosenWhereThereIsNoGpuAndHairIsThin) {
 
 // Buffers hold 819 rows of this width where a storage block has 128 MiB: the picture is made in two parts.
 TEST_F(EyeLayers, APictureOfManyRowsIsWhole) {
-  const StrandSet strands = tuft(60000, 0.0004f);
+  const StrandSet strands = tuft(20000, 0.0012f);
   PolygonMesh head;
   head.positions = {{-0.1, 0.4, 0}, {0.1, 0.4, 0}, {0, 0.6, 0}};
   head.faceOffsets = {0, 3};
@@ -145,7 +145,7 @@ TEST_F(EyeLayers, APictureOfManyRowsIsWhole) {
   PreviewScene scene = sceneOf(strands);
   scene.head = &head;
   scene.ground = Ground{Vec3(0, -0.1, 0), Vec3::UnitY(), 0.7, Vec3f::Constant(0.1f)};
-  PreviewOptions options = small(1024, 2);
+  PreviewOptions options = small(1024, 1);
   options.transparency = PreviewTransparency::Stochastic;
   const Image truth = render(scene, options).image;
   options.transparency = PreviewTransparency::Auto;
