@@ -13,7 +13,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 volumeScale;         // xyz = 1 / extent
   vec4 shadowInfo;          // 1 = filtered look-ups, depth range (world), texel (world), bias (world)
   vec4 hairColor;           // w = 1: the strands carry colours
-  vec4 headColor;           // w = look-ups of the key light's map on surfaces, a pixel and sub-frame
+  vec4 headColor;
   vec4 backgroundTop;
   vec4 backgroundBottom;
 };

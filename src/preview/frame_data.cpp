@@ -84,7 +84,7 @@ FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions
   frame.skyColor = vec4(lights.skyColor);
   frame.groundColor = vec4(lights.groundColor);
   frame.hairColor = vec4(options.hairColor);
-  frame.headColor = vec4(options.headColor, float(4 / std::min(options.subframes, 4)));
+  frame.headColor = vec4(options.headColor);
   frame.backgroundTop = vec4(options.backgroundTop);
   frame.backgroundBottom = vec4(options.backgroundBottom);
   return frame;

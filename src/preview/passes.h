@@ -11,6 +11,7 @@
 #include "preview/hair_map.h"
 #include "preview/light_volume.h"
 #include "preview/program.h"
+#include "preview/surface_shadow.h"
 #include "preview/synthesis.h"
 
 namespace coif::preview {
@@ -55,13 +56,14 @@ class ShadowPass {
                                  const Fog* fog, const Openness* open, const StrandBuffers* lines,
                                  const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
   void bindForHair() const;
-  void bindForHead() const { bind(hairOnly_); }
+  void bindForHead() const;
   const HairMap& map() const { return map_; }
 
  private:
   void bind(const Texture& volume) const;
   Texture headDepth_, hairOnly_, withHead_;
   HairMap map_;
+  SurfaceShadow surface_;
 };
 
 /// Every program and permutation that the room can ask for; a test compiles them all.

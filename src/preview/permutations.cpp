@@ -1,15 +1,25 @@
 #include "preview/eye_pass.h"
 
 namespace coif::preview {
+namespace {
+
+// How a surface learns what the hair leaves of the key light.
+std::vector<std::string> surfaceDefines(const VisibilityOptions& visibility) {
+  if (SurfaceShadow::usedBy(visibility)) return {"SURFACE_SHADOW"};
+  if (visibility.method == VisibilityMethod::LightMap) return {"LIGHT_MAP"};
+  return {};
+}
+
+}  // namespace
 
 ProgramSource headProgram(const VisibilityOptions& visibility, bool studio) {
-  ProgramSource source{"head.vert", "head.frag", mapDefines(visibility)};
+  ProgramSource source{"head.vert", "head.frag", surfaceDefines(visibility)};
   if (studio) source.defines.push_back("SHADING_STUDIO");
   return source;
 }
 
 ProgramSource groundProgram(const VisibilityOptions& visibility) {
-  return {"ground.vert", "ground.frag", mapDefines(visibility)};
+  return {"ground.vert", "ground.frag", surfaceDefines(visibility)};
 }
 
 ProgramSource shadeProgram(const VisibilityOptions& visibility, const ShadeParts& parts) {
@@ -33,14 +43,16 @@ std::vector<ProgramSource> allPermutations() {
   };
   append(mapPrograms());
   append(eyePrograms());
-  std::vector<std::vector<std::string>> lights = mapQueryPermutations();
-  for (std::vector<std::string>& defines : lights) {
-    all.push_back({"head.vert", "head.frag", defines});
-    all.push_back(all.back());
-    all.back().defines.push_back("SHADING_STUDIO");
-    all.push_back({"ground.vert", "ground.frag", defines});
-    defines.push_back("SHADOWS");
+  append(SurfaceShadow::programs());
+  for (const VisibilityMethod method :
+       {VisibilityMethod::None, VisibilityMethod::LightMap, VisibilityMethod::DeepOpacity}) {
+    VisibilityOptions visibility;
+    visibility.method = method;
+    for (const bool studio : {false, true}) all.push_back(headProgram(visibility, studio));
+    all.push_back(groundProgram(visibility));
   }
+  std::vector<std::vector<std::string>> lights = mapQueryPermutations();
+  for (std::vector<std::string>& defines : lights) defines.push_back("SHADOWS");
   lights.push_back({});
   lights.push_back({"SLICED"});
   lights.push_back({"VISIBILITY_RUNNING", "SHADOWS", "SLICED"});

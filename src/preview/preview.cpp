@@ -13,7 +13,7 @@ Result<Preview> Preview::create() {
   COIF_ASSIGN(device->gl, EglContext::create());
   COIF_TRY(device->gl->makeCurrent());
   const CurrentContext current(*device->gl);
-  device->programs = std::make_unique<Programs>();
+  device->programs = std::make_unique<Programs>(allPermutations());
   device->empty = makeVertexArray();
   device->mostBatchPoints = mostBatchPoints();
   device->mostRawPoints = mostRawPoints();

@@ -40,6 +40,12 @@ Status expand(const std::string& name, std::set<std::string>& seen, std::string&
   return {};
 }
 
+std::string keyOf(const ProgramSource& source) {
+  std::string key = source.vertex + '|' + source.fragment;
+  for (const std::string& define : source.defines) key += '|' + define;
+  return key;
+}
+
 Result<GLuint> compile(GLenum stage, const std::string& name, std::span<const std::string> defines) {
   COIF_ASSIGN(const std::string text, shaderText(name, defines));
   const GLuint shader = glCreateShader(stage);
@@ -105,15 +111,18 @@ Result<Program> buildProgram(const ProgramSource& source) {
                    source.vertex + (compute ? "" : " + " + source.fragment));
 }
 
-Programs::Programs() : programs_(allPrograms().size()) {}
+Programs::Programs(std::span<const ProgramSource> known) : programs_(allPrograms().size()) {
+  for (const ProgramSource& source : known) known_.insert(keyOf(source));
+}
 
 GLuint Programs::operator[](ProgramId id) const {
   return built(programs_[std::size_t(id)], allPrograms()[std::size_t(id)]);
 }
 
 GLuint Programs::operator()(const ProgramSource& source) const {
-  std::string key = source.vertex + '|' + source.fragment;
-  for (const std::string& define : source.defines) key += '|' + define;
+  const std::string key = keyOf(source);
+  if (!known_.contains(key) && error_.ok())
+    error_ = makeError(ErrorCode::NotFound, "this permutation is not in the list of all: " + key);
   return built(permutations_[key], source);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,8 +44,9 @@ Result<std::string> shaderText(const std::string& name, std::span<const std::str
 /// The linked programs, each compiled when it is first asked for: what a scene does not use is not compiled.
 class Programs {
  public:
-  Programs();
-  /// 0 where it does not compile; error() then says why.
+  /// `known`: every program that may be asked for, so that none escapes the test that compiles them all.
+  explicit Programs(std::span<const ProgramSource> known);
+  /// 0 where it does not compile, or is not known; error() then says why.
   GLuint operator[](ProgramId id) const;
   /// A permutation that has no id of its own.
   GLuint operator()(const ProgramSource& source) const;
@@ -53,6 +55,7 @@ class Programs {
  private:
   GLuint built(Program& program, const ProgramSource& source) const;
 
+  std::set<std::string> known_;
   mutable std::vector<Program> programs_;
   mutable std::map<std::string, Program> permutations_;  ///< by files and macros
   mutable Status error_;

@@ -284,7 +284,6 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   if (hair && options.leaveOut && options.transparency == PreviewTransparency::Auto &&
       eye->method() == PreviewTransparency::DepthLayers && options.subframes > kEnoughOfLayers) {
     options.subframes = kEnoughOfLayers;
-    frame.headColor.w() = makeFrame(view, lights, options).headColor.w();
     report(picture, "more sub-frames", StageState::Skipped, "depth layers have no noise: two do");
   }
   shade(options, picture);

@@ -8,6 +8,7 @@ namespace coif::preview {
 namespace {
 
 constexpr double kBias = 0.012;  // of the diagonal: roots lie on the head's surface
+constexpr double kSpread = 2.5;  // of a map's hair's width: hairs on a head stand some 3.5 apart
 constexpr int kLayerMap = 128;   // texels a side of the map that layer sizes are chosen on
 
 Texture uploadVolume(const LightVolume& volume) {
@@ -40,6 +41,13 @@ Texture drawHead(const Programs& programs, const HeadBuffers* head, int size) {
   glDisable(GL_DEPTH_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   return map;
+}
+
+// Before the coarse strands were widened.
+double meanWidth(const CoarseStrands& coarse) {
+  double sum = 0;
+  for (const CoarseStrands::Point& p : coarse.points) sum += double(p.width);
+  return coarse.points.empty() ? 0 : sum / double(coarse.points.size()) / coarse.scale;
 }
 
 StrandSet asStrands(const CoarseStrands& coarse) {
@@ -106,7 +114,15 @@ Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& v
   }
   pass.map_.bind();
   pass.headDepth_ = drawHead(programs, headBuffers, view.size);
+  if (lines != nullptr && SurfaceShadow::usedBy(pass.map_.options()))
+    pass.surface_ = SurfaceShadow(programs, pass.map_, pass.headDepth_,
+                                  kSpread * meanWidth(*strands) * lines->plan().widthScale);
   return pass;
+}
+
+void ShadowPass::bindForHead() const {
+  bind(hairOnly_);
+  surface_.bind();
 }
 
 void ShadowPass::bindForHair() const {

@@ -8,6 +8,7 @@
 
 #include "coif/base/random.h"
 #include "preview/context_egl.h"
+#include "preview/passes.h"
 
 namespace coif::preview {
 namespace {
@@ -52,7 +53,7 @@ class HairMaps : public ::testing::Test {
     if (!made.ok()) GTEST_SKIP() << made.error().text();
     gl = std::move(*made);
     ASSERT_TRUE(gl->makeCurrent().ok());
-    programs = std::make_unique<Programs>();
+    programs = std::make_unique<Programs>(allPermutations());
   }
   void TearDown() override {
     if (gl == nullptr) return;
@@ -159,6 +160,41 @@ TEST_F(HairMaps, AgreeWithTheCpuForEveryMethod) {
       EXPECT_LT(std::abs(d.mean), 1e-3) << test.name;
       EXPECT_LT(d.meanAbsolute, 2e-3) << test.name;
       EXPECT_TRUE(test.options.method == VisibilityMethod::None || d.cpuMean < 0.9) << test.name;
+    }
+  }
+}
+
+// Nearly opaque and nearly invisible hair, a light amid the hair, hair far longer than the map, all strands in one
+// texel, no width.
+TEST_F(HairMaps, AgreeWithTheCpuAtExtremes) {
+  const StrandSet usual = clumps(300), wide = clumps(300, 9), none = clumps(20, 0);
+  StrandSet bundle;
+  for (int i = 0; i < 300; ++i) {
+    bundle.points.insert(bundle.points.end(), {Vec3f(0.1f, 0.1f, 0), Vec3f(0.1001f, 0.1f, 0.5f), Vec3f(0.1f, 0.1003f, 1)});
+    bundle.widths.resize(bundle.points.size(), 0.02f);
+    bundle.offsets.push_back(bundle.points.size());
+  }
+  const Box box = boxOf(usual), corner{box.lo, box.lo + 0.2 * (box.hi - box.lo)};
+  const Vec3 middle = 0.5 * (box.lo + box.hi);
+  const Vec3 oblique(0.3, 0.8, 0.45);
+  struct Extreme {
+    const char* name;
+    const StrandSet* strands;
+    LightView view;
+    double opacity;
+  };
+  const Extreme extremes[] = {{"opaque", &wide, distantLightView(oblique, box, 128), 1},
+                              {"invisible", &usual, distantLightView(oblique, box, 128), 1e-6},
+                              {"a light in the hair", &usual, pointLightView(middle, box, 128), 1},
+                              {"hair beyond the map", &usual, distantLightView(oblique, corner, 128), 1},
+                              {"one texel", &bundle, distantLightView(Vec3(0.001, 0, 1), box, 64), 1},
+                              {"no width", &none, distantLightView(oblique, box, 64), 1}};
+  for (const Extreme& extreme : extremes) {
+    for (const Case& test : everyMethod()) {
+      const Difference d = compare(*extreme.strands, extreme.view, test.options, extreme.opacity);
+      // As above; fewer hairs, so that one that falls to the texel beside weighs more.
+      EXPECT_LT(std::abs(d.mean), 1e-3) << extreme.name << ", " << test.name;
+      EXPECT_LT(d.meanAbsolute, 4e-3) << extreme.name << ", " << test.name;
     }
   }
 }

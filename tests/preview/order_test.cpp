@@ -74,12 +74,11 @@ class EverythingInOrder {
 
 class Order : public testing::PreviewTest {
  protected:
-  static void expectTheSame(const PreviewScene& scene, const PreviewOptions& options,
-                            const std::string& what) {
-    render(scene, options);  // what a driver does once
-    const Image image = render(scene, options).image;
+  static void expectTheSame(PreviewSession& session, PreviewOptions options, const std::string& what) {
+    options.keep = false;
+    const Image image = render(session, options).image;
     const EverythingInOrder inOrder;
-    EXPECT_TRUE(render(scene, options).image.rgba == image.rgba) << what;
+    EXPECT_TRUE(render(session, options).image.rgba == image.rgba) << what;
   }
 };
 
@@ -92,17 +91,18 @@ TEST_F(Order, OfEveryTransparencyAndShadowIsKept) {
   PreviewScene scene = sceneOf(strands);
   scene.head = &head;
   scene.ground = Ground{Vec3(0, -0.1, 0), Vec3::UnitY(), 0.7, Vec3f::Constant(0.1f)};
+  PreviewSession session = sessionFor(scene);
   PreviewOptions options = small(128, 2);
   options.leaveOut = false;
   options.visibility.slices = 100;
   for (const char* word : transparencyNames()) {
     ASSERT_TRUE(setTransparency(options, word).ok());
-    expectTheSame(scene, options, word);
+    expectTheSame(session, options, word);
   }
   options.transparency = PreviewTransparency::Auto;
   for (const char* word : visibilityNames()) {
     ASSERT_TRUE(setVisibility(options, word).ok());
-    expectTheSame(scene, options, word);
+    expectTheSame(session, options, word);
   }
 }
 
@@ -112,7 +112,8 @@ TEST_F(Order, OfTheRowsOfATallPictureIsKept) {
   const StrandSet strands = tuft(3000, 0.0004f);
   PreviewOptions options = small(1024, 2);
   options.transparency = PreviewTransparency::DepthLayers;
-  expectTheSame(sceneOf(strands), options, "depth layers");
+  PreviewSession session = sessionFor(sceneOf(strands));
+  expectTheSame(session, options, "depth layers");
 }
 
 }  // namespace

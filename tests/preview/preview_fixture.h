@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "coif/base/random.h"
-#include "coif/preview/preview.h"
+#include "coif/preview/session.h"
 
 namespace coif::testing {
 
@@ -29,6 +31,22 @@ class PreviewTest : public ::testing::Test {
     EXPECT_TRUE(picture.ok()) << picture.error().text();
     return picture.ok() ? *std::move(picture) : Picture{};
   }
+  /// For many pictures of one scene: what does not change is made once.
+  static PreviewSession sessionFor(const PreviewScene& scene) {
+    PreviewSession session(*preview());
+    const bool set = (scene.strands == nullptr || session.setStrands(*scene.strands).ok()) &&
+                     (scene.head == nullptr || session.setHead(*scene.head).ok()) &&
+                     session.setGround(scene.ground).ok();
+    EXPECT_TRUE(set);
+    session.setCamera(scene.camera);
+    session.setLights(scene.lights);
+    return session;
+  }
+  static Picture render(PreviewSession& session, const PreviewOptions& options) {
+    Result<Picture> picture = session.render(options);
+    EXPECT_TRUE(picture.ok()) << picture.error().text();
+    return picture.ok() ? *std::move(picture) : Picture{};
+  }
   static double alphaSum(const Image& image) {
     double sum = 0;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += image.rgba[i] / 255.0;
@@ -42,6 +60,26 @@ class PreviewTest : public ::testing::Test {
     return options;
   }
 };
+
+// Pixels with hair that are black, or far brighter than all around them.
+inline int speckles(const Image& image) {
+  const auto at = [&](int x, int y) { return &image.rgba[4 * std::size_t(y * image.width + x)]; };
+  const auto light = [&](int x, int y) { return at(x, y)[0] + at(x, y)[1] + at(x, y)[2]; };
+  int count = 0;
+  for (int y = 1; y + 1 < image.height; ++y) {
+    for (int x = 1; x + 1 < image.width; ++x) {
+      if (at(x, y)[3] < 128) continue;
+      int brightest = 0;
+      for (int k = 0; k < 9; ++k) {
+        const int dx = k % 3 - 1, dy = k / 3 - 1;
+        if ((dx != 0 || dy != 0) && at(x + dx, y + dy)[3] > 64)
+          brightest = std::max(brightest, light(x + dx, y + dy));
+      }
+      if (light(x, y) == 0 || (brightest > 0 && light(x, y) > 6 * brightest + 60)) ++count;
+    }
+  }
+  return count;
+}
 
 inline void addStrand(StrandSet& strands, std::initializer_list<Vec3f> points, float width) {
   strands.points.insert(strands.points.end(), points);
