@@ -23,6 +23,7 @@ constexpr Entry kBenches[] = {
 #ifdef COIF_WITH_PREVIEW
     {"gpu", benchGpu},
     {"picture", benchPicture},
+    {"skips", benchSkips},
 #endif
     {"dynamics", benchDynamics},
 };

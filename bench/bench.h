@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,9 +18,16 @@
 
 namespace coif {
 
+struct BenchFigure;
+
 struct BenchOptions {
   bool quick = false;  ///< a few seconds, for tests: fewer sizes, same figures
   std::uint64_t seed = 1;
+  /// Seconds after which a bench of many rows (gpu) begins no further one; it measures what matters most
+  /// first, and says what it left out. 0: no bound.
+  double budgetSeconds = 200;
+  /// Told of each figure as soon as it is measured (gpu), so that a run that is cut off keeps them.
+  std::function<void(const BenchFigure&)> onFigure = {};
   Context context;
 };
 
@@ -126,6 +134,7 @@ BenchReport benchVisibility(const BenchOptions& options);   ///< bench_visibilit
 BenchReport benchScattering(const BenchOptions& options);   ///< bench_scattering.cpp
 BenchReport benchGpu(const BenchOptions& options);          ///< bench_gpu.cpp; not without COIF_WITH_PREVIEW
 BenchReport benchPicture(const BenchOptions& options);      ///< bench_picture.cpp; not without COIF_WITH_PREVIEW
+BenchReport benchSkips(const BenchOptions& options);        ///< bench_skips.cpp; not without COIF_WITH_PREVIEW
 BenchReport benchDynamics(const BenchOptions& options);     ///< bench_dynamics.cpp
 
 }  // namespace coif

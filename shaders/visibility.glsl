@@ -56,12 +56,12 @@ float keyPastHeadSmoothly(vec3 p) {
   vec2 f = fract(t), g = 1.0 - f;
   vec2 w[4] = vec2[](g * g * g / 6.0, (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0,
                      (3.0 * g * g * g - 6.0 * g * g + 4.0) / 6.0, f * f * f / 6.0);
-  float sum = 0.0;
+  float hidden = 0.0;
   for (int k = 0; k < 16; ++k) {
     float first = texelFetch(headDepthMap, base + ivec2(k & 3, k >> 2), 0).r;
-    sum += first == 1.0 || first * shadowInfo.y >= s.z ? w[k & 3].x * w[k >> 2].y : 0.0;
+    hidden += first == 1.0 || first * shadowInfo.y >= s.z ? 0.0 : w[k & 3].x * w[k >> 2].y;
   }
-  return sum;
+  return 1.0 - hidden;
 }
 
 // The part of the key light that is left, for extinction `strength` a channel of what hair has.

@@ -2,6 +2,9 @@
 #include "bench/bench.h"
 
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
 
 #include "command.h"
 
@@ -12,6 +15,7 @@ namespace {
 struct BenchArguments {
   std::string name, folder;
   bool quick = false;
+  double budget = BenchOptions{}.budgetSeconds;
   std::uint64_t seed = 1;
 };
 
@@ -19,7 +23,23 @@ Status bench(const BenchArguments& arguments, Session& session) {
   BenchOptions options;
   options.quick = arguments.quick;
   options.seed = arguments.seed;
+  options.budgetSeconds = arguments.budget;
   options.context = session.context();
+  std::ofstream rows;
+  if (!arguments.folder.empty()) {
+    std::error_code failed;  // said when the report is written
+    std::filesystem::create_directories(arguments.folder, failed);
+  }
+  options.onFigure = [&](const BenchFigure& figure) {
+    endProgress();
+    char value[40];
+    std::snprintf(value, sizeof value, "%.4g", figure.value);
+    if (!session.quiet) std::cerr << figure.name << ": " << value << " " << figure.unit << std::endl;
+    if (arguments.folder.empty()) return;
+    const std::filesystem::path path = std::filesystem::path(arguments.folder) / (arguments.name + "-rows.csv");
+    if (!rows.is_open()) rows.open(path), rows << "figure,value,unit\n";
+    rows << '"' << figure.name << "\"," << value << ',' << figure.unit << std::endl;
+  };
   COIF_ASSIGN(const auto reports, runBenches(arguments.name, options));
   for (const BenchReport& report : reports) {
     session.say(report.title);
@@ -55,6 +75,9 @@ void addBench(CLI::App& app, Session& session) {
   command->add_option("name", arguments->name, "What to measure")->required()->check(CLI::IsMember(names));
   command->add_option("-o,--output", arguments->folder, "Folder for .csv, .svg and report.html");
   command->add_option("--seed", arguments->seed, "Seed of the test cases");
+  command->add_option("--budget", arguments->budget,
+                      "gpu: seconds after which no further row is begun, 0 for no bound")
+      ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--quick", arguments->quick, "Fewer sizes, a few seconds");
   command->callback([arguments, &session] {
     if (const Status status = bench(*arguments, session); !status.ok()) session.fail(status.error());

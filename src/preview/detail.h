@@ -44,7 +44,7 @@ struct DetailOptions {
   std::size_t maxSegments = 1000000;
   double tolerancePx = 0.5;          ///< how far a curve may move
   double longestPx = 32;             ///< of a segment, as shading is interpolated along it
-  double ribbonPx = 0.4;             ///< strands are widened to about this
+  double ribbonPx = 0.3;             ///< strands are widened to about this
   std::size_t leastStrands = 12000;  ///< below, single hairs are told apart
   bool lines = true;                 ///< where no strand is wider than a pixel
   std::size_t batchPoints = 1u << 22;

@@ -19,6 +19,10 @@ bool usableWidth(float width) {
 std::uint32_t seedOf(const StrandSet& strands, std::size_t s) {
   return std::uint32_t(mix64((strands.ids.empty() ? s : strands.ids[s]) + 1));
 }
+/// Shaders tell where a strand ends by the next one's seed.
+void separateNeighbours(std::vector<Root>& roots) {
+  for (std::size_t r = 1; r < roots.size(); ++r) roots[r].seed ^= roots[r].seed == roots[r - 1].seed ? 1u : 0u;
+}
 Eigen::Vector4f vec4(const Vec3f& v, float w = 0) {
   return {v.x(), v.y(), v.z(), w};
 }
@@ -160,6 +164,7 @@ Result<PreparedHair> prepareGrown(const HairMesh& mesh, const StrandSet& strands
                                  strands.points[first]));
     if (model.coarseRoots.size() < kCoarseStrands) addCoarseRoot(strands, s, lockOf[s], model);
   }
+  separateNeighbours(upload.roots);
   if (model.coarseRoots.weightOffsets.empty()) model.coarseRoots.weightOffsets.push_back(0);
   sortCoarseRoots(model.coarseRoots, mesh.bundles().size());
   std::vector<Vec3> positions = model.rest;
@@ -213,6 +218,7 @@ Result<PreparedHair> prepareImported(const StrandSet& strands, std::size_t maxPo
     if (s % stride == 0 || lock.examples.empty()) addExample(strands, s, lock);
     if (model.coarse.strandCount() < kCoarseStrands) addCoarseImported(strands, s, model.coarse);
   }
+  separateNeighbours(upload.roots);
   model.finishCoarse();
   return hair;
 }

@@ -8,7 +8,7 @@
 namespace coif {
 namespace {
 
-constexpr std::size_t kSoftwareSegments = 450000, kHardwareSegments = 12000000;
+constexpr double kSoftwareSegments = 450000, kHardwareSegments = 12000000;  // of a picture of 512²
 constexpr int kMapSize =
     1024;  // finer ones resolve single hairs, which few layers cannot follow (docs/visibility.md)
 
@@ -50,6 +50,12 @@ Box finiteBox(const HairMesh& mesh) {
   return points.empty() ? Box{} : bounds(points);
 }
 
+std::size_t mostSegments(const PreviewOptions& options, const Device& device, double part) {
+  if (options.maxSegments > 0) return std::size_t(std::min(part, 1.0) * double(options.maxSegments));
+  return std::size_t(device.gl->software() ? part * kSoftwareSegments
+                                           : std::min(part, 1.0) * kHardwareSegments);
+}
+
 DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
   DetailOptions detail;
   detail.lod = options.lod;
@@ -60,9 +66,9 @@ DetailOptions detailOf(const PreviewOptions& options, const Device& device) {
                        method == PreviewTransparency::AlphaToCoverage;
   detail.lines = options.lod && options.lines && !(samples && device.gl->software());
   detail.batchPoints = device.mostBatchPoints;
-  detail.maxSegments = options.maxSegments > 0 ? options.maxSegments
-                       : device.gl->software() ? kSoftwareSegments
-                                               : kHardwareSegments;
+  // In a large picture so few strands would show as wires.
+  const double larger = std::clamp(std::sqrt(double(options.width) * options.height) / 512, 1.0, 3.0);
+  detail.maxSegments = mostSegments(options, device, larger);
   return detail;
 }
 
@@ -72,7 +78,7 @@ DetailOptions mapDetailOf(const PreviewOptions& options, const Device& device) {
   detail.tolerancePx = 0.7;
   detail.ribbonPx = 1;
   detail.longestPx = 64;
-  detail.maxSegments /= 2;
+  detail.maxSegments = mostSegments(options, device, 0.5);
   return detail;
 }
 
@@ -259,7 +265,7 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
 }
 
 Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const Context& context) {
-  constexpr int kEnoughOfLayers = 2;
+  constexpr int kEnoughOfLayers = 1;
   const Stopwatch watch;
   COIF_TRY(checkOptions(asked));
   PreviewOptions options = asked;
@@ -284,9 +290,9 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   if (hair && options.leaveOut && options.transparency == PreviewTransparency::Auto &&
       eye->method() == PreviewTransparency::DepthLayers && options.subframes > kEnoughOfLayers) {
     options.subframes = kEnoughOfLayers;
-    report(picture, "more sub-frames", StageState::Skipped, "depth layers have no noise: two do");
+    report(picture, "more sub-frames", StageState::Skipped, "depth layers have no noise: one does");
   }
-  shade(options, picture);
+  shade(asked, picture);
   COIF_TRY(draw(options, view, frame, frameBuffer, picture, context));
   COIF_TRY(device->programs->error());
   for (const std::string& warning : device->gl->log().warnings)

@@ -62,6 +62,17 @@ TEST_F(Extremes, HairsThatCoverAllOrNextToNothingOfAPixel) {
   expectCleanByEveryMethod(sceneOf(thin), options, 0, "alpha 1e-6");
 }
 
+TEST_F(Extremes, StrandsOfOneIdAreNotJoined) {
+  StrandSet strands;
+  for (const float y : {0.1f, 0.3f, 0.5f, 0.7f}) addStrand(strands, {Vec3f(-0.4f, y, 0), Vec3f(0.4f, y, 0)}, 0.01f);
+  PreviewOptions options = small(96);
+  options.shadows = false;
+  options.transparency = PreviewTransparency::DepthLayers;
+  const double apart = alphaSum(render(sceneOf(strands), options).image);
+  strands.ids.assign(4, 7);
+  EXPECT_NEAR(alphaSum(render(sceneOf(strands), options).image), apart, 1e-3 * apart);
+}
+
 TEST_F(Extremes, NoWidth) {
   StrandSet none;
   for (int i = 0; i < 20; ++i) addStrand(none, {Vec3f(-0.4f, 0.02f * float(i), 0), Vec3f(0.4f, 0.3f, 0)}, 0);

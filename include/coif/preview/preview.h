@@ -49,7 +49,7 @@ enum class PreviewShading {
 
 /// What covers a pixel in part. All but Opaque keep a hair's coverage, width over pixel.
 enum class PreviewTransparency {
-  Auto,              ///< DepthLayers, of two sub-frames at most, where there is no GPU and no hair is wide;
+  Auto,              ///< DepthLayers, of one sub-frame, where there is no GPU and no hair is wide;
                      ///< else Stochastic
   Opaque,            ///< as if at least a pixel wide: the depth buffer alone
   Stochastic,        ///< a random part of the samples, right on average
