@@ -98,6 +98,13 @@ Vec3 ChainStepper::fieldForce(std::uint32_t node, const Vec3& position, const Ve
   return force;
 }
 
+Vec3 ChainStepper::quietForce(std::uint32_t node, const Vec3& position) const {
+  Mat3 stiffness;
+  Vec3 force = fieldForce(node, position, Vec3::Zero(), stiffness);
+  if (!laterals_.entries.empty() && chains_.parents[node] != kNone) force += lateralPull(node);
+  return force;
+}
+
 bool ChainStepper::usableFrame(std::uint32_t tree) {
   if (rootFrames_[tree] == knownFrames_[tree]) return true;
   if (!isFrame(rootFrames_[tree])) return false;
@@ -125,11 +132,18 @@ void ChainStepper::begin(ChainState& state, std::span<ForceField* const> fields,
     const bool good = rootPositions_[t].allFinite() && usableFrame(t);
     treeFaults_[t] = good ? lanes::LaneFault::None : lanes::LaneFault::NotFinite;
     newton_[t] = 0;
-    asleep_[t] = sleeps(t, timeStep);
-    if (laterals_.entries.empty() && runs(t)) continue;
+    asleep_[t] = 0;
+  }
+  const auto stay = [&](std::uint32_t t) {
     const std::uint32_t first = chains_.treeOffsets[t], end = chains_.treeOffsets[t + 1];
     std::copy(&state.positions[first], &state.positions[first] + (end - first), &positions_[first]);
     std::copy(&state.velocities[first], &state.velocities[first] + (end - first), &velocities_[first]);
+  };
+  const bool seen = !laterals_.entries.empty();  // by neighbours
+  for (std::uint32_t t = 0; t < chains_.treeCount() && seen; ++t) stay(t);
+  for (std::uint32_t t = 0; t < chains_.treeCount(); ++t) {
+    asleep_[t] = sleeps(t, timeStep);
+    if (!seen && !runs(t)) stay(t);
   }
 }
 
@@ -138,12 +152,11 @@ bool ChainStepper::sleeps(std::uint32_t tree, double timeStep) const {
   const std::uint32_t root = chains_.treeOffsets[tree];
   if (rootPositions_[tree] != start_->positions[root] || rootFrames_[tree] != start_->rootFrames[tree])
     return false;
-  if (fields_.empty()) return true;
+  if (fields_.empty() && laterals_.entries.empty()) return true;
   // A change that would bring a node to sleepSpeed within sleepSteps wakes the chain.
   const double wake = options_.sleepSpeed / (timeStep * options_.sleepSteps);
-  Mat3 stiffness;
   for (std::uint32_t i = root; i < chains_.treeOffsets[tree + 1]; ++i) {
-    const Vec3 force = fieldForce(i, start_->positions[i], Vec3::Zero(), stiffness);
+    const Vec3 force = quietForce(i, start_->positions[i]);
     if (!((force - start_->quietForces[i]).norm() <= wake * chains_.masses[i])) return false;
   }
   return true;
@@ -223,12 +236,10 @@ void ChainStepper::watchSleep(ChainState& state, std::uint32_t tree) {
 }
 
 void ChainStepper::restQuietly(ChainState& state, std::uint32_t tree) {
-  Mat3 stiffness;
   for (std::uint32_t i = chains_.treeOffsets[tree]; i < chains_.treeOffsets[tree + 1]; ++i) {
     velocities_[i].setZero();
-    if (asleep_[tree] != 0 && fields_.empty()) continue;
     if (state.quietSteps[tree] == std::uint32_t(options_.sleepSteps))
-      state.quietForces[i] = fieldForce(i, positions_[i], Vec3::Zero(), stiffness);
+      state.quietForces[i] = quietForce(i, positions_[i]);
   }
 }
 
@@ -248,6 +259,7 @@ void ChainStepper::finish(ChainState& state, double timeStep, StepReport& report
     if (options_.sleepSpeed > 0) watchSleep(state, t);
   }
   report.meanNewton = report.solved > 0 ? newton / double(report.solved) : 0;
+  report.inSingle = inSingle_;
   report.faults = faults_;
   std::swap(state.previousPositions, state.positions);
   std::swap(state.previousVelocities, state.velocities);

@@ -20,6 +20,9 @@ struct LateralTable {
 };
 LateralTable lateralTable(const ChainSet& chains);
 
+template <class T, int L>
+class LaneBlocks;
+
 class ChainStepper : public Solver {
  public:
   Result<StepReport> step(ChainState& state, std::span<ForceField* const> fields, double timeStep,
@@ -32,6 +35,9 @@ class ChainStepper : public Solver {
   /// and newton_.
   virtual void sweep(const Context& context) = 0;
 
+  template <class T, int L>
+  friend class LaneBlocks;
+
   lanes::StepConstants constants(double timeStep, bool second) const;
   bool runs(std::uint32_t tree) const {
     return asleep_[tree] == 0 && treeFaults_[tree] != lanes::LaneFault::NotFinite;
@@ -41,6 +47,8 @@ class ChainStepper : public Solver {
   /// Whether the root is moved or turned in this step, and does work.
   bool driven(std::uint32_t tree) const;
   Vec3 lateralPull(std::uint32_t node) const;
+  /// Of fields and lateral springs on a node at rest where `positions` has it: what wakes a chain.
+  Vec3 quietForce(std::uint32_t node, const Vec3& position) const;
   Vec3 fieldForce(std::uint32_t node, const Vec3& position, const Vec3& velocity, Mat3& stiffness) const;
   void reset(std::uint32_t tree);
 
@@ -48,6 +56,7 @@ class ChainStepper : public Solver {
   SolverOptions options_;
   LateralTable laterals_;
   double meanLength_ = 1;
+  std::size_t inSingle_ = 0;  // trees
 
   // One step's.
   const ChainState* start_ = nullptr;

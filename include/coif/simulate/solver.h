@@ -44,9 +44,11 @@ struct SolverOptions {
   /// Newton stops once no node moves further than this fraction of the mean link. Say what a tenth of a pixel
   /// is to stop earlier; 0: to rounding.
   double tolerance = 1e-7;
-  bool floatLanes = false;  ///< 16 chains at once in single precision, for chains up to ~100 links
-  /// Chains at rest are skipped until their root, a field's force or the gravity changes: a chain sleeps
-  /// after sleepSteps steps in which no node moved faster than sleepSpeed. 0: never.
+  /// 16 chains at once in single precision; those of more than 100 links or with masses more than 1e4 apart
+  /// stay in double.
+  bool floatLanes = false;
+  /// Chains at rest are skipped until their root, a field's force or a neighbour's pull changes: a chain
+  /// sleeps after sleepSteps steps in which no node moved faster than sleepSpeed. 0: never.
   double sleepSpeed = 0;
   int sleepSteps = 10;
   bool skipBending = true;  ///< leave the bending terms out of blocks whose joints have no stiffness
@@ -82,6 +84,7 @@ struct ChainFault {
 
 struct StepReport {
   std::size_t solved = 0, asleep = 0;  ///< trees
+  std::size_t inSingle = 0;            ///< trees that are solved in single precision when they are awake
   int maxNewton = 0;                   ///< of any tree
   double meanNewton = 0;
   double seconds = 0;

@@ -1,4 +1,4 @@
-#include "simulate/lane_solver.h"
+#include "simulate/lane_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +14,17 @@ constexpr std::size_t kLinksAChunk = 1024;
 }  // namespace
 
 template <class T, int L>
-LaneSolver<T, L>::LaneSolver(const ChainSet& chains, const SolverOptions& options)
-    : ChainStepper(chains, options), bins_(binChains(chains, options.skipBending)) {
+LaneBlocks<T, L>::LaneBlocks(ChainStepper& stepper, const std::vector<std::uint8_t>& single)
+    : stepper_(stepper), bins_(binChains(stepper.chains_, stepper.options_.skipBending)) {
+  for (ChainBin& bin : bins_)
+    std::erase_if(bin.trees, [&](std::uint32_t t) { return (single[t] != 0) != (sizeof(T) == 4); });
   makeBlocks();
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::makeBlocks() {
+void LaneBlocks<T, L>::makeBlocks() {
+  const ChainSet& chains = stepper_.chains_;
+  std::size_t links = 0;
   for (std::uint32_t b = 0; b < bins_.size(); ++b) {
     const ChainBin& bin = bins_[b];
     for (std::size_t from = 0; from < bin.trees.size(); from += L) {
@@ -30,32 +34,34 @@ void LaneSolver<T, L>::makeBlocks() {
       block.constants.resize(bin.parents.size());
       for (int l = 0; l < L; ++l) {
         block.trees[l] = bin.trees[from + std::size_t(l < block.used ? l : 0)];
-        const std::uint32_t root = block.roots[l] = chains_.treeOffsets[block.trees[l]];
+        const std::uint32_t root = block.roots[l] = chains.treeOffsets[block.trees[l]];
         for (std::size_t n = 0; n < bin.parents.size(); ++n) {
           lanes::NodeConstants<T, L>& c = block.constants[n];
           const std::size_t i = root + n;
-          c.length[l] = n > 0 ? T(chains_.lengths[i]) : T(1);
+          c.length[l] = n > 0 ? T(chains.lengths[i]) : T(1);
           c.perLength[l] = T(1) / c.length[l];
-          c.mass[l] = T(chains_.masses[i]);
-          c.kappa[l] = n > 0 ? T(chains_.stiffness[i]) : T(0);
+          c.mass[l] = T(chains.masses[i]);
+          c.kappa[l] = n > 0 ? T(chains.stiffness[i]) : T(0);
           if (n > 0 && bin.parents[n] == 0 && bin.anyFree) c.kappa[l] = 0;
-          c.drag[l] = T(chains_.drags[i]);
-          for (int k = 0; k < 3; ++k) c.rest[k][l] = T(chains_.restDirections[i][k]);
+          c.drag[l] = T(chains.drags[i]);
+          for (int k = 0; k < 3; ++k) c.rest[k][l] = T(chains.restDirections[i][k]);
         }
       }
       blocks_.push_back(std::move(block));
     }
-    largest_ = std::max(largest_, bin.parents.size());
-    largestStash_ = std::max(largestStash_, std::size_t(bin.slotCount));
+    if (!bin.trees.empty()) {
+      links += bin.trees.size() * (bin.parents.size() - 1);
+      largest_ = std::max(largest_, bin.parents.size());
+      largestStash_ = std::max(largestStash_, std::size_t(bin.slotCount));
+    }
     if (b + 1 == bins_.size() || bins_[b + 1].colour != bin.colour) colourEnds_.push_back(blocks_.size());
   }
-  const std::size_t links =
-      std::max<std::size_t>(1, chains_.linkCount() / std::max<std::size_t>(1, blocks_.size()));
-  grain_ = std::max<std::size_t>(1, kLinksAChunk / links);
+  const std::size_t each = std::max<std::size_t>(1, links / std::max<std::size_t>(1, blocks_.size()));
+  grain_ = std::max<std::size_t>(1, kLinksAChunk / each);
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::makeScratch(const Context& context) {
+void LaneBlocks<T, L>::makeScratch(const Context& context) {
   const std::size_t threads =
       context.threads > 0 ? std::size_t(context.threads) : std::max(1u, std::thread::hardware_concurrency());
   while (scratches_.size() < threads + 1) {  // the caller's thread may join an arena of `threads`
@@ -67,7 +73,7 @@ void LaneSolver<T, L>::makeScratch(const Context& context) {
 }
 
 template <class T, int L>
-auto LaneSolver<T, L>::takeScratch() -> Scratch& {
+auto LaneBlocks<T, L>::takeScratch() -> Scratch& {
   for (;;) {
     for (const std::unique_ptr<Scratch>& scratch : scratches_) {
       if (!scratch->busy.test_and_set(std::memory_order_acquire)) return *scratch;
@@ -77,11 +83,11 @@ auto LaneSolver<T, L>::takeScratch() -> Scratch& {
 }
 
 template <class T, int L>
-lanes::Kernel<T, L> LaneSolver<T, L>::kernel() const {
+lanes::Kernel<T, L> LaneBlocks<T, L>::kernel() const {
   const lanes::Kernels& best = lanes::bestKernels();
   const auto choose = [this](auto direct, auto overveld, auto xpbd) {
-    if (options_.method == DynamicsMethod::VanOverveld) return overveld;
-    return options_.method == DynamicsMethod::Xpbd ? xpbd : direct;
+    if (stepper_.options_.method == DynamicsMethod::VanOverveld) return overveld;
+    return stepper_.options_.method == DynamicsMethod::Xpbd ? xpbd : direct;
   };
   if constexpr (sizeof(T) == 8) {
     return choose(best.direct, best.overveld, best.xpbd);
@@ -91,21 +97,14 @@ lanes::Kernel<T, L> LaneSolver<T, L>::kernel() const {
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::sweep(const Context& context) {
+void LaneBlocks<T, L>::solve(std::size_t colour, const Context& context) {
+  const std::size_t first = colour > 0 ? colourEnds_[colour - 1] : 0, last = colourEnds_[colour];
+  if (first == last) return;
   makeScratch(context);
-  std::size_t first = 0;
-  for (const std::size_t last : colourEnds_) {
-    solveColour(first, last, context);
-    first = last;
-  }
-}
-
-template <class T, int L>
-void LaneSolver<T, L>::solveColour(std::size_t first, std::size_t last, const Context& context) {
   Context all = context;
   all.cancel = nullptr;  // half a step would be none
   struct Args {
-    LaneSolver* self;
+    LaneBlocks* self;
     std::size_t first;
   } args{this, first};
   parallelFor(all, last - first, grain_, [&args](std::size_t begin, std::size_t end) {
@@ -117,24 +116,24 @@ void LaneSolver<T, L>::solveColour(std::size_t first, std::size_t last, const Co
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::solveBlock(const LaneBlock& block, Scratch& scratch) {
+void LaneBlocks<T, L>::solveBlock(const LaneBlock& block, Scratch& scratch) {
   bool run[L], again[L];
   bool any = false, repeat = false;
   for (int l = 0; l < L; ++l) {
-    run[l] = l < block.used && runs(block.trees[l]);
+    run[l] = l < block.used && stepper_.runs(block.trees[l]);
     any |= run[l];
   }
   if (!any) return;
   lanes::Block<T, L> lane;
   FieldCall call{this, &block, scratch.work.data()};
   lane.context = &call;
-  if (!fields_.empty()) lane.fields = &LaneSolver::callFields;
+  if (!stepper_.fields_.empty()) lane.fields = &LaneBlocks::callFields;
   gather(block, scratch, lane);
   for (int l = 0; l < L; ++l) lane.active[l] = T(run[l]);
-  kernel()(lane, step_);
+  kernel()(lane, stepper_.step_);
   for (int l = 0; l < L; ++l) {
-    again[l] =
-        run[l] && step_.scheme == lanes::Scheme::Midpoint && lane.fault[l] == lanes::LaneFault::NotConverged;
+    again[l] = run[l] && stepper_.step_.scheme == lanes::Scheme::Midpoint &&
+               lane.fault[l] == lanes::LaneFault::NotConverged;
     repeat |= again[l];
     run[l] = run[l] && !again[l];
   }
@@ -142,7 +141,7 @@ void LaneSolver<T, L>::solveBlock(const LaneBlock& block, Scratch& scratch) {
   if (!repeat) return;
   gather(block, scratch, lane);  // the midpoint's equations had no solution that Newton found
   for (int l = 0; l < L; ++l) lane.active[l] = T(again[l]);
-  kernel()(lane, fallback_);
+  kernel()(lane, stepper_.fallback_);
   for (int l = 0; l < L; ++l) {
     if (again[l] && lane.fault[l] == lanes::LaneFault::None) lane.fault[l] = lanes::LaneFault::NotConverged;
   }
@@ -150,7 +149,7 @@ void LaneSolver<T, L>::solveBlock(const LaneBlock& block, Scratch& scratch) {
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::gather(const LaneBlock& block, Scratch& scratch, lanes::Block<T, L>& out) {
+void LaneBlocks<T, L>::gather(const LaneBlock& block, Scratch& scratch, lanes::Block<T, L>& out) {
   const ChainBin& bin = bins_[block.bin];
   out.nodes = std::int32_t(bin.parents.size());
   out.parents = bin.parents.data();
@@ -159,48 +158,48 @@ void LaneSolver<T, L>::gather(const LaneBlock& block, Scratch& scratch, lanes::B
   out.work = scratch.work.data();
   out.stashes = scratch.stashes.data();
   out.bend = bin.bend, out.curved = bin.curved, out.anyFree = bin.anyFree;
-  out.lateral = !laterals_.entries.empty();
+  out.lateral = !stepper_.laterals_.entries.empty();
   for (int l = 0; l < L; ++l) {
     const std::uint32_t tree = block.trees[l];
-    const Mat3 frame = frameForStep(tree);
+    const Mat3 frame = stepper_.frameForStep(tree);
     for (int k = 0; k < 9; ++k) out.rootAxes[k][l] = T(frame(k % 3, k / 3));
-    out.freeRoot[l] = chains_.freeRoots[tree];
-    out.driven[l] = T(driven(tree));
+    out.freeRoot[l] = stepper_.chains_.freeRoots[tree];
+    out.driven[l] = T(stepper_.driven(tree));
   }
   for (int n = 0; n < out.nodes; ++n) gatherNode(block, n, scratch.work[std::size_t(n)]);
   for (int l = 0; l < L; ++l) {
-    const Vec3 moved = rootPositions_[block.trees[l]] - start_->positions[block.roots[l]];
+    const Vec3 moved = stepper_.rootPositions_[block.trees[l]] - stepper_.start_->positions[block.roots[l]];
     for (int k = 0; k < 3; ++k) scratch.work[0].x[k][l] = T(moved[k]);
   }
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::gatherNode(const LaneBlock& block, int node, lanes::NodeWork<T, L>& work) const {
-  const bool history = step_.scheme == lanes::Scheme::Bdf2;
+void LaneBlocks<T, L>::gatherNode(const LaneBlock& block, int node, lanes::NodeWork<T, L>& work) const {
+  const bool history = stepper_.step_.scheme == lanes::Scheme::Bdf2;
   for (int l = 0; l < L; ++l) {
     const std::size_t i = block.roots[l] + std::size_t(node);
-    const Vec3& place = start_->positions[i];
-    const Vec3 offset = place - start_->positions[block.roots[l]];
+    const Vec3& place = stepper_.start_->positions[i];
+    const Vec3 offset = place - stepper_.start_->positions[block.roots[l]];
     for (int k = 0; k < 3; ++k) {
       work.start[k][l] = offset[k];
-      work.v0[k][l] = T(start_->velocities[i][k]);
+      work.v0[k][l] = T(stepper_.start_->velocities[i][k]);
       if (!history) continue;
-      work.back[k][l] = T(start_->previousPositions[i][k] - place[k]);
-      work.vBack[k][l] = T(start_->previousVelocities[i][k]);
+      work.back[k][l] = T(stepper_.start_->previousPositions[i][k] - place[k]);
+      work.vBack[k][l] = T(stepper_.start_->previousVelocities[i][k]);
     }
   }
-  if (laterals_.entries.empty() || node == 0) return;
+  if (stepper_.laterals_.entries.empty() || node == 0) return;
   for (int l = 0; l < L; ++l) {
-    const Vec3 pull = lateralPull(block.roots[l] + std::uint32_t(node));
+    const Vec3 pull = stepper_.lateralPull(block.roots[l] + std::uint32_t(node));
     for (int k = 0; k < 3; ++k) work.lateral[k][l] = T(pull[k]);
   }
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::callFields(void* context) {
+void LaneBlocks<T, L>::callFields(void* context) {
   const FieldCall& call = *static_cast<const FieldCall*>(context);
-  const LaneSolver& solver = *call.solver;
-  const std::size_t nodes = solver.bins_[call.block->bin].parents.size();
+  const ChainStepper& stepper = call.blocks->stepper_;
+  const std::size_t nodes = call.blocks->bins_[call.block->bin].parents.size();
   Mat3 stiffness;
   for (std::size_t n = 0; n < nodes; ++n) {
     lanes::NodeWork<T, L>& w = call.work[n];
@@ -210,8 +209,8 @@ void LaneSolver<T, L>::callFields(void* context) {
       Vec3 force = Vec3::Zero();
       stiffness.setZero();
       if (used) {
-        const Vec3 at = solver.start_->positions[i] + Vec3(w.move[0][l], w.move[1][l], w.move[2][l]);
-        force = solver.fieldForce(i, at, Vec3(w.v[0][l], w.v[1][l], w.v[2][l]), stiffness);
+        const Vec3 at = stepper.start_->positions[i] + Vec3(w.move[0][l], w.move[1][l], w.move[2][l]);
+        force = stepper.fieldForce(i, at, Vec3(w.v[0][l], w.v[1][l], w.v[2][l]), stiffness);
       }
       for (int k = 0; k < 3; ++k) w.force[k][l] = T(force[k]);
       const double upper[6] = {stiffness(0, 0), stiffness(0, 1), stiffness(0, 2),
@@ -222,30 +221,37 @@ void LaneSolver<T, L>::callFields(void* context) {
 }
 
 template <class T, int L>
-void LaneSolver<T, L>::scatter(const LaneBlock& block, const lanes::Block<T, L>& in, const bool* which) {
+void LaneBlocks<T, L>::scatter(const LaneBlock& block, const lanes::Block<T, L>& in, const bool* which) {
   const std::size_t nodes = bins_[block.bin].parents.size();
   for (int l = 0; l < L; ++l) {
     if (!which[l]) continue;
     const std::uint32_t tree = block.trees[l];
-    treeFaults_[tree] = in.fault[l];
-    newton_[tree] = std::max(newton_[tree], double(in.newtonSteps[l]));
+    stepper_.treeFaults_[tree] = in.fault[l];
+    stepper_.newton_[tree] = std::max(stepper_.newton_[tree], double(in.newtonSteps[l]));
     const std::uint32_t root = block.roots[l];
-    const Vec3 origin = start_->positions[root];
+    // A prescribed root is where it has to be to the bit, and the chain with it: T may not hold how far it
+    // went.
+    const lanes::NodeWork<T, L>& first = in.work[0];
+    const bool isFree = stepper_.chains_.freeRoots[tree] != 0;
+    const Vec3 origin =
+        isFree
+            ? stepper_.start_->positions[root]
+            : Vec3(stepper_.rootPositions_[tree] - Vec3(first.end[0][l], first.end[1][l], first.end[2][l]));
     bool finite = true;
     for (std::uint32_t n = 0; n < nodes; ++n) {
       const lanes::NodeWork<T, L>& w = in.work[n];
-      positions_[root + n] = origin + Vec3(w.end[0][l], w.end[1][l], w.end[2][l]);
-      velocities_[root + n] = Vec3(w.v[0][l], w.v[1][l], w.v[2][l]);
-      finite &= positions_[root + n].allFinite() && velocities_[root + n].allFinite();
+      stepper_.positions_[root + n] = origin + Vec3(w.end[0][l], w.end[1][l], w.end[2][l]);
+      stepper_.velocities_[root + n] = Vec3(w.v[0][l], w.v[1][l], w.v[2][l]);
+      finite &= stepper_.positions_[root + n].allFinite() && stepper_.velocities_[root + n].allFinite();
     }
-    if (!chains_.freeRoots[tree]) positions_[root] = rootPositions_[tree];  // to the bit
-    if (!finite) treeFaults_[tree] = lanes::LaneFault::NotFinite;
+    if (!isFree) stepper_.positions_[root] = stepper_.rootPositions_[tree];
+    if (!finite) stepper_.treeFaults_[tree] = lanes::LaneFault::NotFinite;
     // Neighbours must not see it before the step's end resets it.
-    if (treeFaults_[tree] == lanes::LaneFault::NotFinite) reset(tree);
+    if (stepper_.treeFaults_[tree] == lanes::LaneFault::NotFinite) stepper_.reset(tree);
   }
 }
 
-template class LaneSolver<double, lanes::kDoubleLanes>;
-template class LaneSolver<float, lanes::kFloatLanes>;
+template class LaneBlocks<double, lanes::kDoubleLanes>;
+template class LaneBlocks<float, lanes::kFloatLanes>;
 
 }  // namespace coif

@@ -1,4 +1,4 @@
-// Gathers chains into lanes, runs a kernel on each block, scatters what came out.
+// Chains of one precision in lanes: gathers them, runs a kernel on each block, scatters what came out.
 #pragma once
 
 #include <array>
@@ -11,10 +11,17 @@
 
 namespace coif {
 
+/// A part of a stepper's chains: reads its step and writes its results, chain by chain.
 template <class T, int L>
-class LaneSolver : public ChainStepper {
+class LaneBlocks {
  public:
-  LaneSolver(const ChainSet& chains, const SolverOptions& options);
+  /// `single`: by tree, whether it is solved in single precision; the others are left out (float) or these
+  /// (double).
+  LaneBlocks(ChainStepper& stepper, const std::vector<std::uint8_t>& single);
+
+  std::size_t colours() const { return colourEnds_.size(); }
+  /// Chains of one colour, which see none of each other.
+  void solve(std::size_t colour, const Context& context);
 
  private:
   struct LaneBlock {
@@ -30,26 +37,25 @@ class LaneSolver : public ChainStepper {
     std::atomic_flag busy;
   };
   struct FieldCall {
-    LaneSolver* solver = nullptr;
+    const LaneBlocks* blocks = nullptr;
     const LaneBlock* block = nullptr;
     lanes::NodeWork<T, L>* work = nullptr;
   };
 
-  void sweep(const Context& context) override;
   void makeBlocks();
   void makeScratch(const Context& context);
   Scratch& takeScratch();
   lanes::Kernel<T, L> kernel() const;
-  void solveColour(std::size_t first, std::size_t last, const Context& context);
   void solveBlock(const LaneBlock& block, Scratch& scratch);
   void gather(const LaneBlock& block, Scratch& scratch, lanes::Block<T, L>& out);
   void gatherNode(const LaneBlock& block, int node, lanes::NodeWork<T, L>& work) const;
   void scatter(const LaneBlock& block, const lanes::Block<T, L>& in, const bool* which);
   static void callFields(void* context);
 
+  ChainStepper& stepper_;
   std::vector<ChainBin> bins_;
   std::vector<LaneBlock> blocks_;
-  std::vector<std::size_t> colourEnds_;
+  std::vector<std::size_t> colourEnds_;  ///< by colour, into blocks_
   std::size_t grain_ = 1, largest_ = 0, largestStash_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratches_;
 };
