@@ -20,6 +20,7 @@ namespace {
 struct Arguments {
   RenderArguments render;
   FrameArguments frames;
+  DynamicsArguments dynamics;
   StrandArguments strands;
   EvaluateArguments evaluate;
 };
@@ -116,7 +117,7 @@ class PreviewRenderer {
     return grown_ ? session_.moveHair(positions, context) : Status();
   }
 
-  /// Everything anew, where it is in the scene: a frame of styled hair.
+  /// Everything anew, where it is in the scene: a frame of hair that follows no mesh by itself.
   Status show(const Subject& seen, const Context& context) {
     if (seen.strands) COIF_TRY(session_.setStrands(*seen.strands, context));
     return seen.head ? session_.setHead(*seen.head) : Status();
@@ -191,6 +192,7 @@ Status render(const Arguments& all, Session& session) {
   const RenderArguments& arguments = all.render;
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
   all.strands.apply(scene);
+  COIF_TRY(all.dynamics.apply(scene));
   if (all.frames.asked())
     scene.strands.tolerance = 0;  // strands that move have the same points on every frame
   Evaluation evaluation(all.evaluate.options());
@@ -211,12 +213,12 @@ Status render(const Arguments& all, Session& session) {
     return preview ? preview->render(camera, path, context, session)
                    : tracePicture(seen, scene, arguments, camera, path, context, session);
   };
-  // The GPU's hair moves in the head's frame, where its roots stand still; styled hair and the path tracer's
-  // in the scene's.
+  // The GPU's hair moves in the head's frame, where its roots stand still; styled hair, hair in wisps and the
+  // path tracer's in the scene's.
   const auto frame = [&](const DynamicsCache& motion, std::size_t f,
                          const std::string& path) -> Result<Json> {
     const RigidPose& pose = motion.poses[f];
-    if (preview && !subject.styled) {
+    if (preview && !subject.styled && scene.dynamics.wisps == 0) {
       COIF_ASSIGN(const HairMesh moved, evaluation.meshAt(scene, motion, f, context));
       std::optional<Ground> ground;
       if (subject.ground) ground = groundFromHead(*subject.ground, pose);
@@ -272,6 +274,7 @@ void addRender(CLI::App& app, Session& session) {
       "  coif render bob.coif -o turn.png --turntable 36\n"
       "  coif render long.coif -o sway.png --motion long.coifcache --frames 1-48\n");
   arguments->frames.addTo(*command, arguments->render.addTo(*command));
+  arguments->dynamics.addTo(*command);
   arguments->strands.addTo(*command);
   arguments->evaluate.addTo(*command);
   command->callback([arguments, &session] {

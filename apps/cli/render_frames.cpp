@@ -59,11 +59,12 @@ Result<DynamicsCache> FrameArguments::load(const Scene& scene, Evaluation& evalu
     return *simulated;
   }
   COIF_ASSIGN(DynamicsCache cache, loadCache(motion));
-  COIF_ASSIGN(const HairMesh* mesh, evaluation.placedMesh(scene, context));
-  if (cache.vertexCount != mesh->vertices().size())
+  COIF_ASSIGN(const std::size_t points, evaluation.movedPoints(scene, context));
+  if (cache.vertexCount != points)
     return makeError(ErrorCode::InvalidArgument,
-                     "this motion is of another hair mesh: it has " + std::to_string(cache.vertexCount) +
-                         " vertices, the scene's has " + std::to_string(mesh->vertices().size()),
+                     "this motion is of another hair mesh, or of other wisps: it has " +
+                         std::to_string(cache.vertexCount) + " points, the scene's has " +
+                         std::to_string(points),
                      "", motion);
   if (end(cache) > cache.frameCount())
     return makeError(ErrorCode::InvalidArgument,

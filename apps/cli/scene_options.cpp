@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "coif/io/safe_file.h"
+#include "coif/scene/dynamics_text.h"
 
 namespace coif::cli {
 
@@ -27,6 +28,37 @@ void StrandArguments::apply(Scene& scene) const {
   if (tolerance) settings.tolerance = *tolerance;
   if (seed) settings.seed = *seed;
   if (width) settings.width = *width;
+}
+
+void DynamicsArguments::addTo(CLI::App& command) {
+  const auto add = [&](const char* option, const char* setting, const char* help) {
+    return command.add_option_function<std::string>(
+        option, [this, setting](const std::string& value) { named.emplace_back(setting, value); }, help);
+  };
+  add("--solver", "solver", "Instead of the scene's")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kMethodNames), std::end(kMethodNames))));
+  add("--wind", "wind", "Kind of wind, instead of the scene's")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kWindNames), std::end(kWindNames))));
+  add("--wisps", "wisps", "Simulate so many wisps of three guides, not the hair mesh; 0: the hair mesh");
+  add("--precision", "precision", "Of the solver")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(std::begin(kPrecisionNames), std::end(kPrecisionNames))));
+  std::string names;
+  for (const std::string& name : dynamicsNames()) names += (names.empty() ? "" : ", ") + name;
+  command
+      .add_option("--set", set, "NAME=VALUE, a dynamics setting instead of the scene's; repeatable: " + names)
+      ->allow_extra_args(false);
+}
+
+Status DynamicsArguments::apply(Scene& scene) const {
+  for (const auto& [name, value] : named) COIF_TRY(setDynamics(scene.dynamics, name, value));
+  for (const std::string& text : set) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos)
+      return makeError(ErrorCode::InvalidArgument, "--set wants NAME=VALUE, not '" + text + "'");
+    COIF_TRY(setDynamics(scene.dynamics, text.substr(0, at), text.substr(at + 1)));
+  }
+  return {};
 }
 
 void EvaluateArguments::addTo(CLI::App& command) {

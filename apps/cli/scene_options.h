@@ -20,7 +20,16 @@ struct StrandArguments {
   void apply(Scene& scene) const;
 };
 
-/// --explain, --report, --force, --no-head, --solver.
+/// --solver, --wind, --wisps, --precision, --set: how hair moves, instead of what the document says.
+struct DynamicsArguments {
+  std::vector<std::pair<std::string, std::string>> named;  ///< a setting's name and its value
+  std::vector<std::string> set;                            ///< "NAME=VALUE"
+
+  void addTo(CLI::App& command);
+  Status apply(Scene& scene) const;
+};
+
+/// --explain, --report, --force, --no-head.
 struct EvaluateArguments {
   bool explain = false, noHead = false;
   std::string reportFile;

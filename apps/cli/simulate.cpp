@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "coif/io/safe_file.h"
+#include "coif/scene/dynamics_text.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 #include "scene_options.h"
@@ -15,7 +16,7 @@ namespace {
 struct SimulateArguments {
   std::string scene, headMotion, output;
   SimulateOptions what;
-  std::optional<std::string> solver, wind;
+  DynamicsArguments dynamics;
   StrandArguments strands;
   EvaluateArguments evaluate;
 };
@@ -26,19 +27,6 @@ struct DrapeArguments {
   std::optional<double> droop;
   EvaluateArguments evaluate;
 };
-
-const std::map<std::string, DynamicsMethod> kSolvers = {
-    {"van-overveld", DynamicsMethod::VanOverveld},
-    {"articulated-explicit", DynamicsMethod::ArticulatedExplicit},
-    {"articulated-implicit", DynamicsMethod::ArticulatedImplicit},
-    {"xpbd", DynamicsMethod::Xpbd},
-    {"direct", DynamicsMethod::Direct},
-    {"direct-bdf2", DynamicsMethod::DirectBdf2},
-    {"energy-keeping", DynamicsMethod::EnergyKeeping}};
-const std::map<std::string, WindKind> kWinds = {{"none", WindKind::None},
-                                                {"constant", WindKind::Constant},
-                                                {"gusts", WindKind::Gusts},
-                                                {"fluid", WindKind::Fluid}};
 
 /// A line a frame: x y z of the position, then x y z w of the turn as a quaternion.
 Result<std::vector<RigidPose>> readPoses(const std::string& path) {
@@ -64,19 +52,10 @@ Result<std::vector<RigidPose>> readPoses(const std::string& path) {
   return poses;
 }
 
-Status writeReport(const Evaluation& evaluation, const EvaluateArguments& arguments, const Session& session) {
-  if (arguments.explain && !session.json) std::cout << explainText(evaluation.reports());
-  if (arguments.reportFile.empty()) return {};
-  COIF_ASSIGN(auto file, SafeFile::create(arguments.reportFile));
-  file.write(reportJson(evaluation.reports()));
-  return file.commit();
-}
-
 Status simulate(const SimulateArguments& arguments, Session& session) {
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
   arguments.strands.apply(scene);
-  if (arguments.solver) scene.dynamics.method = kSolvers.at(*arguments.solver);
-  if (arguments.wind) scene.dynamics.wind = kWinds.at(*arguments.wind);
+  COIF_TRY(arguments.dynamics.apply(scene));
   SimulateOptions what = arguments.what;
   if (!arguments.headMotion.empty()) {
     COIF_ASSIGN(what.motion.poses, readPoses(arguments.headMotion));
@@ -98,8 +77,8 @@ Status simulate(const SimulateArguments& arguments, Session& session) {
     notes = written.notes;
   }
   session.say("wrote " + arguments.output + ": " + std::to_string(motion->frameCount()) + " frames of " +
-              std::to_string(motion->vertexCount) + " vertices");
-  COIF_TRY(writeReport(evaluation, arguments.evaluate, session));
+              std::to_string(motion->vertexCount) + " points");
+  COIF_TRY(arguments.evaluate.tell(evaluation.reports(), session));
   nlohmann::ordered_json result = nlohmann::ordered_json::parse(reportJson(evaluation.reports()));
   result["frames"] = motion->frameCount();
   result["vertices"] = motion->vertexCount;
@@ -132,20 +111,13 @@ Status drape(const DrapeArguments& arguments, Session& session) {
   text << "wrote " << arguments.output << ": " << (report.settled ? "settled" : "still moving") << " after "
        << double(report.frames) / 24 << " s, greatest move " << report.greatestMove;
   session.say(text.str());
-  COIF_TRY(writeReport(evaluation, arguments.evaluate, session));
+  COIF_TRY(arguments.evaluate.tell(evaluation.reports(), session));
   session.finish({{"scene", arguments.output},
                   {"settled", report.settled},
                   {"frames", report.frames},
                   {"greatestMove", report.greatestMove},
                   {"lastMove", report.lastMove}});
   return {};
-}
-
-template <class Map>
-std::vector<std::string> keys(const Map& map) {
-  std::vector<std::string> out;
-  for (const auto& [key, value] : map) out.push_back(key);
-  return out;
 }
 
 }  // namespace
@@ -163,10 +135,7 @@ void addSimulate(CLI::App& app, Session& session) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   command->add_option("--fps", arguments->what.framesPerSecond, "Frames a second")
       ->check(CLI::Range(1e-3, 1e5));
-  command->add_option("--solver", arguments->solver, "Instead of the scene's")
-      ->check(CLI::IsMember(keys(kSolvers)));
-  command->add_option("--wind", arguments->wind, "Kind of wind, instead of the scene's")
-      ->check(CLI::IsMember(keys(kWinds)));
+  arguments->dynamics.addTo(*command);
   command->add_option("--head-motion", arguments->headMotion,
                       "A text file, a line a frame: x y z of the head, x y z w of its turn");
   arguments->strands.addTo(*command);

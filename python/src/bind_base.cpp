@@ -192,6 +192,13 @@ void bindReports(nb::module_& m) {
         return e.value < 0 ? std::string("<coif.ErrorEstimate: none claimed>")
                            : "<coif.ErrorEstimate: " + std::to_string(e.value) + " " + e.unit + ">";
       });
+  nb::class_<LeftOut>(m, "LeftOut", "Work that a scene did not need.")
+      .def_ro("what", &LeftOut::what, "What was left out.")
+      .def_ro("switch", &LeftOut::control, "The setting that has a say in it.")
+      .def_ro("trigger", &LeftOut::trigger, "Why it could be left out.")
+      .def_ro("share", &LeftOut::share, "How much of `of` was left out, 0 to 1.")
+      .def_ro("of", &LeftOut::of, "What `share` is a part of.")
+      .def("__repr__", [](const LeftOut& l) { return "<coif.LeftOut: " + l.what + " (" + l.control + ")>"; });
   nb::class_<StageReport>(m, "StageReport", "What one stage of an evaluation says of itself.")
       .def_ro("name", &StageReport::name, "Name of the stage.")
       .def_ro("state", &StageReport::state, "Ran, reused or skipped.")
@@ -199,6 +206,7 @@ void bindReports(nb::module_& m) {
       .def_ro("seconds", &StageReport::seconds, "Wall-clock seconds.")
       .def_ro("bytes", &StageReport::bytes, "Size of its result in bytes.")
       .def_ro("error", &StageReport::error, "Its error estimate.")
+      .def_ro("left_out", &StageReport::leftOut, "What it did not need: a list of LeftOut.")
       .def_ro("notes", &StageReport::notes, "Counts and warnings, a sentence each.")
       .def("__repr__", [](const StageReport& r) {
         return "<coif.StageReport: " + r.name + " " + name(r.state) + " (" + r.reason + ")>";

@@ -152,7 +152,9 @@ DrapeReport drapeScene(SceneModel& model, double seconds, double tolerance, bool
 
 void bindMotion(nb::module_& m) {
   using C = DynamicsCache;
-  nb::class_<C>(m, "Motion", "Hair in motion: positions of the hair mesh's vertices, frame by frame.")
+  nb::class_<C>(m, "Motion",
+                "Hair in motion: positions of the hair mesh's vertices, or of the points of its wisps' "
+                "guides, frame by frame.")
       .def_prop_ro(
           "positions",
           [](nb::object self) {

@@ -85,6 +85,17 @@ void bindSettings(nb::module_& m) {
       .def(nb::init<>(), "The defaults.")
       .def_rw("method", &S::method, "The solver.")
       .def_rw("longest_step", &S::longestStep, "Frames are cut into steps at most this long, s.")
+      .def_rw("tolerance", &S::tolerance,
+              "Newton stops where what is left moves no node by more than this fraction of the mean link.")
+      .def_rw("single_precision", &S::singlePrecision,
+              "Chains of up to 100 links in 32-bit floats, sixteen at once.")
+      .def_rw("skip_bending", &S::skipBending, "Leave bending out of chains without stiffness.")
+      .def_rw("sleep_speed", &S::sleepSpeed,
+              "Chains slower than this, m/s, for sleep_seconds are left as they are; 0: never.")
+      .def_rw("sleep_seconds", &S::sleepSeconds, "See sleep_speed, s.")
+      .def_rw("wisps", &S::wisps,
+              "Simulate so many wisps of three guides each, and strands with them; 0: the hair mesh.")
+      .def_rw("guide_points", &S::guidePoints, "Of each guide of a wisp, 2 to 256.")
       .def_rw("settle_seconds", &S::settleSeconds,
               "Time before the first frame in which hair finds its hang.")
       .def_rw("gravity", &S::gravity, "Against the up axis, m/s².")
@@ -124,12 +135,16 @@ void bindSettings(nb::module_& m) {
 void bindReports(nb::module_& m) {
   using R = SimulationReport;
   nb::class_<R>(m, "SimulationReport", "What a simulation did.")
-      .def_ro("vertices", &R::vertices, "Of the hair mesh.")
+      .def_ro("vertices", &R::vertices, "Of the hair mesh, or points of the wisps' guides.")
       .def_ro("chains", &R::chains, "Trees of links.")
       .def_ro("links", &R::links, "Links in all.")
       .def_ro("frames", &R::frames, "Frames computed.")
       .def_ro("steps", &R::steps, "Steps computed.")
       .def_ro("seconds", &R::seconds, "Wall-clock seconds.")
+      .def_ro("chain_steps", &R::chainSteps, "Chains solved, summed over steps.")
+      .def_ro("asleep", &R::asleep, "Chains left as they were, summed over steps.")
+      .def_ro("limp", &R::limp, "Chains without bending terms.")
+      .def_ro("in_single", &R::inSingle, "Chains in single precision.")
       .def_ro("max_newton", &R::maxNewton, "Most Newton steps of a chain in a step.")
       .def_ro("mean_newton", &R::meanNewton, "Mean Newton steps.")
       .def_ro("resets", &R::resets, "Chains that were not finite and were reset.")
@@ -184,7 +199,11 @@ void bindSimulation(nb::module_& m) {
           nb::kw_only(), "threads"_a = 0,
           "One frame on; returns its positions, (V, 3) floats. The result does not depend on threads.")
       .def_prop_ro("positions", &positionsOf, nb::rv_policy::reference,
-                   "Of every vertex at the frame, (V, 3) floats (a copy).")
+                   "Of every vertex at the frame, or of every point of the wisps' guides, (V, 3) floats (a "
+                   "copy).")
+      .def_prop_ro(
+          "left_out", [](const SimulationModel& s) { return s.simulation->leftOut(); },
+          "What the frames so far did not need: a list of LeftOut.")
       .def_prop_ro(
           "frame", [](const SimulationModel& s) { return s.simulation->frame(); }, "Where it is.")
       .def_prop_ro(

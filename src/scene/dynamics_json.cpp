@@ -1,5 +1,7 @@
 #include "scene/dynamics_json.h"
 
+#include <cstdio>
+
 #include "scene/typed_array.h"
 
 namespace coif::scene {
@@ -13,6 +15,9 @@ constexpr std::size_t kCapsuleNumbers = 8;  // a, b, radius, withHead
 template <class Settings, class Visit>
 void forNumbers(Settings& s, Visit&& visit) {
   visit("longestStep", s.longestStep);
+  visit("tolerance", s.tolerance);
+  visit("sleepSpeed", s.sleepSpeed);
+  visit("sleepSeconds", s.sleepSeconds);
   visit("settleSeconds", s.settleSeconds);
   visit("gravity", s.gravity);
   visit("droop", s.droop);
@@ -49,6 +54,10 @@ nlohmann::ordered_json dynamicsJson(const DynamicsSettings& s) {
   nlohmann::ordered_json out;
   out["solver"] = kMethodNames[int(s.method)];
   forNumbers(s, [&](const char* name, double value) { out[name] = value; });
+  out["precision"] = kPrecisionNames[int(s.singlePrecision)];
+  out["wisps"] = s.wisps;
+  out["guidePoints"] = s.guidePoints;
+  out["skipBending"] = std::uint32_t(s.skipBending);
   out["wind"] = kWindNames[int(s.wind)];
   const std::vector<double> wind{s.windVelocity[0], s.windVelocity[1], s.windVelocity[2]};
   out["windVelocity"] = encodeDoubles(wind);
@@ -68,6 +77,10 @@ DynamicsSettings readDynamics(JsonReader reader) {
   DynamicsSettings s;
   s.method = DynamicsMethod(indexOf(reader, "solver", kMethodNames, int(s.method)));
   forNumbers(s, [&](const char* name, double& value) { value = reader.number(name, value, -1e30, 1e30); });
+  s.singlePrecision = indexOf(reader, "precision", kPrecisionNames, int(s.singlePrecision)) == 1;
+  s.wisps = std::size_t(reader.integer("wisps", s.wisps, 0, 10000));
+  s.guidePoints = std::uint32_t(reader.integer("guidePoints", s.guidePoints, 2, 256));
+  s.skipBending = reader.integer("skipBending", std::uint64_t(s.skipBending), 0, 1) != 0;
   s.wind = WindKind(indexOf(reader, "wind", kWindNames, int(s.wind)));
   if (reader.has("windVelocity")) {
     const auto wind = reader.doubles("windVelocity");
@@ -95,3 +108,46 @@ DynamicsSettings readDynamics(JsonReader reader) {
 }
 
 }  // namespace coif::scene
+
+namespace coif {
+
+std::vector<std::string> dynamicsNames() {
+  std::vector<std::string> names;
+  const nlohmann::ordered_json json = scene::dynamicsJson({});
+  for (const auto& [name, value] : json.items())
+    if (name != "capsules") names.push_back(name);
+  return names;
+}
+
+Status setDynamics(DynamicsSettings& settings, const std::string& name, const std::string& value) {
+  nlohmann::json json = nlohmann::json::parse(scene::dynamicsJson(settings).dump());  // as from a file
+  if (!json.contains(name) || name == "capsules") {
+    std::string all;
+    for (const std::string& known : dynamicsNames()) all += (all.empty() ? "" : ", ") + known;
+    return makeError(ErrorCode::InvalidArgument,
+                     "there is no dynamics setting named '" + name + "'; there are " + all);
+  }
+  const auto unsuited = [&](const std::string& why) {
+    return makeError(ErrorCode::InvalidArgument, why + ", not '" + value + "'", name);
+  };
+  if (name == "windVelocity") {
+    std::vector<double> v(3);
+    int used = 0;
+    if (std::sscanf(value.c_str(), "%lf,%lf,%lf%n", &v[0], &v[1], &v[2], &used) != 3 ||
+        std::size_t(used) != value.size())
+      return unsuited("three numbers with commas between them are wanted");
+    json[name] = scene::encodeDoubles(v);
+  } else if (json[name].is_string()) {
+    json[name] = value;
+  } else {
+    json[name] = nlohmann::json::parse(value, nullptr, false);
+    if (!json[name].is_number()) return unsuited("a number is wanted");
+  }
+  scene::JsonReader reader(json);
+  const DynamicsSettings read = scene::readDynamics(reader);
+  if (!reader.status().ok()) return unsuited(reader.status().error().message);
+  settings = read;
+  return {};
+}
+
+}  // namespace coif

@@ -6,6 +6,7 @@
 
 #include "coif/io/skin_io.h"
 #include "coif/scene/evaluate.h"
+#include "coif/simulate/wisps.h"
 
 namespace coif {
 
@@ -30,6 +31,13 @@ struct Evaluation::Impl {
   StylePlan motionPlan;  // of strands with fixed points, where the scene's are adaptive
   std::optional<DynamicsCache> motion;
   std::optional<SimulationReport> simulationReport;
+  struct Wisps {
+    std::uint64_t key = 0;
+    WispSet set;
+    std::optional<std::uint64_t> boundKey;  // of the strands
+    std::vector<WispStrand> bound;
+  };
+  std::optional<Wisps> wisps;
 
   bool forced(const char* stage) const {
     return options.force.contains(stage) || options.force.contains("all");
@@ -56,6 +64,9 @@ struct Evaluation::Impl {
   /// The style of strands with fixed points, on the mesh at rest.
   Result<const StylePlan*> styleForMotion(const Scene& scene, const Context& context);
   Status simulate(const Scene& scene, const SimulateOptions& what, const Context& context);
+  Status makeWisps(const Scene& scene, const Context& context);
+  Result<StrandSet> carried(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
+                            const Context& context);
 
   struct Skin {
     std::optional<StrandSkin> binding;

@@ -31,6 +31,10 @@ std::string explainText(const std::vector<StageReport>& reports) {
       std::snprintf(line, sizeof line, "error %.2g ", report.error.value);
       out += indent + line + report.error.unit + " (" + report.error.method + ")\n";
     }
+    for (const LeftOut& part : report.leftOut) {
+      std::snprintf(line, sizeof line, "left out in %.3g %% of ", 100 * part.share);
+      out += indent + line + part.of + ": " + part.what + " (" + part.control + "): " + part.trigger + "\n";
+    }
     for (const std::string& note : report.notes) out += indent + note + "\n";
   }
   return out;
@@ -47,6 +51,13 @@ std::string reportJson(const std::vector<StageReport>& reports) {
     if (report.error.value >= 0) {
       stage["error"] = {
           {"value", report.error.value}, {"unit", report.error.unit}, {"method", report.error.method}};
+    }
+    for (const LeftOut& part : report.leftOut) {
+      stage["leftOut"].push_back({{"what", part.what},
+                                  {"switch", part.control},
+                                  {"trigger", part.trigger},
+                                  {"share", part.share},
+                                  {"of", part.of}});
     }
     stage["notes"] = report.notes;
     stages.push_back(std::move(stage));

@@ -1,4 +1,4 @@
-// The stage "simulate": frames from memory, from a cache file, or computed; and strands on a frame.
+// The stage "simulate": frames from memory, from a cache file, or computed; what is made of them.
 #include <algorithm>
 #include <bit>
 
@@ -54,11 +54,8 @@ Result<DynamicsCache> earlier(const SimulateOptions& what, std::uint64_t key) {
 void noteSimulation(const SimulationReport& done, StageReport& report) {
   report.notes.push_back(std::to_string(done.chains) + " chains, " + std::to_string(done.links) + " links, " +
                          std::to_string(done.steps) + " steps");
-  for (const FieldUse& use : done.fields) {
-    std::string note = use.name + " acted in " + std::to_string(use.steps) + " steps";
-    if (!use.idleReason.empty()) note += "; left out otherwise: " + use.idleReason;
-    report.notes.push_back(std::move(note));
-  }
+  for (const FieldUse& use : done.fields)
+    report.notes.push_back(use.name + " acted in " + std::to_string(use.steps) + " steps");
   if (done.resets > 0)
     report.notes.push_back(std::to_string(done.resets) + " chains were not finite and were reset");
   if (done.unconverged > 0)
@@ -102,7 +99,7 @@ Status Evaluation::Impl::simulate(const Scene& scene, const SimulateOptions& wha
     cache = {};
     cache.key = key;
     cache.framesPerSecond = what.framesPerSecond;
-    cache.vertexCount = std::uint32_t(placed.vertices().size());
+    cache.vertexCount = std::uint32_t(simulation->positions().size());
     keepFrame(*simulation, cache);
   }
   Stopwatch sinceCheckpoint;
@@ -128,6 +125,7 @@ Status Evaluation::Impl::simulate(const Scene& scene, const SimulateOptions& wha
           kept > 0 ? "went on after frame " + std::to_string(kept - 1) : "mesh, settings or motion are new",
           watch.seconds(), cache.positions.size() * sizeof(Vec3f));
   noteSimulation(*simulationReport, report);
+  report.leftOut = simulation->leftOut();
   motion = std::move(cache);
   return {};
 }
@@ -139,37 +137,6 @@ Result<const DynamicsCache*> Evaluation::simulate(const Scene& scene, const Simu
   COIF_TRY(impl_->runPlace(scene, context));
   COIF_TRY(impl_->simulate(scene, what, context));
   return static_cast<const DynamicsCache*>(&*impl_->motion);
-}
-
-Result<HairMesh> Evaluation::meshAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
-                                    const Context& context) {
-  COIF_ASSIGN(const HairMesh* placed, placedMesh(scene, context));
-  if (frame >= motion.frameCount() || motion.vertexCount != placed->vertices().size())
-    return makeError(ErrorCode::InvalidArgument, "the cache has no such frame of this hair mesh",
-                     "frame " + std::to_string(frame));
-  const RigidPose pose = motion.poses[frame];
-  HairMesh mesh = *placed;
-  for (std::uint32_t v = 0; v < motion.vertexCount; ++v) {
-    const Vec3 local = pose.local(motion.frame(frame)[v].cast<double>());
-    // Roots rest in the head's frame but for float rounding; a scalp that deforms moves them further.
-    const bool rests = mesh.vertices()[v].layer == 0 &&
-                       (local - mesh.position(v)).norm() < 1e-5 * (1 + local.norm() + pose.position.norm());
-    if (!rests) mesh.setPosition(v, local);
-  }
-  return mesh;
-}
-
-Result<StrandSet> Evaluation::strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
-                                        const Context& context) {
-  COIF_ASSIGN(const HairMesh mesh, meshAt(scene, motion, frame, context));
-  const RigidPose pose = motion.poses[frame];
-  Scene asked = scene;
-  asked.strands.tolerance = 0;
-  COIF_ASSIGN(GrowResult grown, grow(mesh, growOptions(asked, impl_->head.get()), context));
-  COIF_ASSIGN(const StylePlan* style, impl_->styleForMotion(scene, context));
-  COIF_TRY(style->apply(mesh, grown.strands, context));
-  for (Vec3f& p : grown.strands.points) p = pose.world(p.cast<double>()).cast<float>();
-  return std::move(grown.strands);
 }
 
 Result<WriteReport> Evaluation::exportMotion(const Scene& scene, const SimulateOptions& what,
@@ -225,6 +192,7 @@ Result<DrapeReport> Evaluation::drape(Scene& scene, const DrapeOptions& options,
   scene.placedHash = meshHash(scene.hairMesh);
   StageReport& report = impl_->add("simulate", StageState::Ran, "draping was asked for", watch.seconds());
   noteSimulation(done.simulation, report);
+  report.leftOut = done.leftOut;
   if (!done.settled) report.notes.push_back("the hair still moved when the time was over");
   return done;
 }

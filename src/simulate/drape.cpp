@@ -19,6 +19,7 @@ Result<DrapeReport> drape(HairMesh& mesh, const DynamicsSettings& settings, cons
   DynamicsSettings calm = settings;
   calm.wind = WindKind::None;
   calm.settleSeconds = 0;
+  calm.wisps = 0;  // it is the mesh that keeps the shape
   calm.drag = std::max(settings.drag, kDrag);
   SimulationWorld still = world;
   still.motion = {};
@@ -46,6 +47,7 @@ Result<DrapeReport> drape(HairMesh& mesh, const DynamicsSettings& settings, cons
   }
   report.greatestMove = greatest(first);
   report.simulation = simulation->report();
+  report.leftOut = simulation->leftOut();
   for (std::size_t v = 0; v < last.size(); ++v) {
     if (mesh.vertices()[v].layer > 0) mesh.setPosition(std::uint32_t(v), last[v]);
   }

@@ -10,6 +10,9 @@ Status validate(const DynamicsSettings& s) {
     double value, lo, hi;
   };
   const Range ranges[] = {{"longestStep", s.longestStep, 1e-6, 10},
+                          {"tolerance", s.tolerance, 0, 0.1},
+                          {"sleepSpeed", s.sleepSpeed, 0, 1e3},
+                          {"sleepSeconds", s.sleepSeconds, 1e-6, 1e3},
                           {"settleSeconds", s.settleSeconds, 0, 3600},
                           {"gravity", s.gravity, -1e4, 1e4},
                           {"droop", s.droop, 0, 1e6},
@@ -18,6 +21,8 @@ Status validate(const DynamicsSettings& s) {
                           {"gustSpeed", s.gustSpeed, 0, 1e4},
                           {"gustSize", s.gustSize, 1e-6, 1e6},
                           {"gustSeconds", s.gustSeconds, 1e-6, 1e6},
+                          {"wisps", double(s.wisps), 0, 10000},
+                          {"guidePoints", double(s.guidePoints), 2, 256},
                           {"airCells", double(s.airCells), 4, 128},
                           {"shelter", s.shelter, 0, 1e9},
                           {"thickness", s.thickness, 0, 1e3},

@@ -82,6 +82,34 @@ RigidPose RootPath::pose(double time) const {
   return between(poses_[frame], poses_[frame + 1], at - double(frame));
 }
 
+Vec3 RootPath::where(std::uint32_t root, double time) const {
+  const double at = std::clamp(time, 0.0, double(roots_.size() - 1));
+  const auto frame = std::min(std::size_t(at), roots_.size() - 1);
+  const auto next = std::min(frame + 1, roots_.size() - 1);
+  const double t = at - double(frame);
+  return (1 - t) * roots_[frame][root] + t * roots_[next][root];
+}
+
+void RootPath::point(std::span<const std::uint32_t> vertices, std::span<const double> weights,
+                     const Vec3& rest, double time, Vec3& position, Mat3& turn) const {
+  if (roots_.empty()) {
+    const RigidPose head = pose(time);
+    position = head.world(rest);
+    turn = head.rotation;
+    return;
+  }
+  std::vector<Vec3> from, to;
+  Vec3 off = rest;
+  position.setZero();
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const std::uint32_t r = rootOf_[vertices[k]];
+    from.push_back(rest_[r]), to.push_back(where(r, time));
+    off -= weights[k] * from.back(), position += weights[k] * to.back();
+  }
+  turn = bestFit(from, to).rotation;
+  position += turn * off;
+}
+
 void RootPath::root(std::uint32_t vertex, double time, Vec3& position, Mat3& turn) const {
   const std::uint32_t r = rootOf_[vertex];
   if (roots_.empty()) {
@@ -90,18 +118,11 @@ void RootPath::root(std::uint32_t vertex, double time, Vec3& position, Mat3& tur
     turn = head.rotation;
     return;
   }
-  const double at = std::clamp(time, 0.0, double(roots_.size() - 1));
-  const auto frame = std::min(std::size_t(at), roots_.size() - 1);
-  const auto next = std::min(frame + 1, roots_.size() - 1);
-  const double t = at - double(frame);
-  const auto where = [&](std::uint32_t root) {
-    return Vec3((1 - t) * roots_[frame][root] + t * roots_[next][root]);
-  };
-  position = where(r);
+  position = where(r, time);
   // The faces around it turn it; where they have no area of their own, the head as a whole does.
   Mat3 covariance = Mat3::Zero();
   for (const std::uint32_t other : around_[r])
-    covariance += (where(other) - position) * (rest_[other] - rest_[r]).transpose();
+    covariance += (where(other, time) - position) * (rest_[other] - rest_[r]).transpose();
   const Eigen::JacobiSVD<Mat3> svd(covariance);
   const auto& sizes = svd.singularValues();
   turn = sizes[1] > 1e-9 * sizes[0] && sizes[0] > 0 ? rotationOf(covariance) : pose(time).rotation;

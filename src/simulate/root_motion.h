@@ -16,8 +16,13 @@ class RootPath {
   RigidPose pose(double time) const;
   /// Position and turn (relative to rest) of a layer-0 vertex.
   void root(std::uint32_t vertex, double time, Vec3& position, Mat3& turn) const;
+  /// The same of a point that is at `rest` and fixed to layer-0 vertices by weights, Σ = 1.
+  void point(std::span<const std::uint32_t> vertices, std::span<const double> weights, const Vec3& rest,
+             double time, Vec3& position, Mat3& turn) const;
 
  private:
+  Vec3 where(std::uint32_t root, double time) const;  ///< with roots_ given
+
   std::vector<RigidPose> poses_;
   std::vector<std::vector<Vec3>> roots_;            ///< by frame; empty: rigid
   std::vector<std::vector<std::uint32_t>> around_;  ///< by root: roots of the faces it is a corner of

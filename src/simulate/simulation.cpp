@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <optional>
 
-#include "coif/base/report.h"
-#include "coif/simulate/collisions.h"
-#include "coif/simulate/forces.h"
-#include "coif/simulate/repulsion.h"
-#include "simulate/root_motion.h"
+#include "simulate/binning.h"
+#include "simulate/left_out.h"
+#include "simulate/simulation_impl.h"
 #include "simulate/simulation_state.h"
 
 namespace coif {
@@ -21,174 +17,65 @@ constexpr double kMaxStepsPerFrame = 1e6;
 
 }  // namespace
 
-struct Simulation::Impl {
-  HairMesh mesh;
-  DynamicsSettings settings;
-  SimulationWorld world;
-  simulate::RootPath path;
-  ChainBuild build;
-  std::unique_ptr<Solver> solver;
-  ChainState state;
-  std::size_t frame = 0;
-  std::vector<Vec3> positions;
-
-  std::shared_ptr<const DistanceBand> band;
-  std::vector<std::unique_ptr<Collider>> capsules;
-  std::vector<std::uint8_t> withHead;  // by collider of the collision field
-  std::unique_ptr<CollisionField> collisions;
-  std::unique_ptr<Air> air;
-  FluidWind* fluid = nullptr;  // the air, when it is one
-  std::unique_ptr<DragField> drag;
-  std::unique_ptr<RepulsionField> repulsion;
-  std::vector<ForceField*> fields;
-  std::vector<Vec3> rootPositions;
-  std::vector<Mat3> rootFrames;
-  SimulationReport report;
-  double newtonSum = 0;
-
-  double perUnit() const { return 1 / world.metersPerUnit; }
-  Vec3 up() const { return world.upAxis == UpAxis::Z ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitY()); }
-
-  Status makeChains();
-  Status makeCollisions(const Context& context);
-  Status makeAir();
-  void makeRepulsion();
-  void addField(ForceField* field, const char* name);
-  void start();
-  void moveRoots(double time);
-  Status step(double from, double to, double timeStep, const Context& context);
-  void gather();
-  void count(const StepReport& stepReport);
-};
-
-Status Simulation::Impl::makeChains() {
+Status Simulation::Impl::makeChains(const Context& context) {
   ChainOptions options;
   if (settings.droop > 0) options.droop = settings.droop;
   options.gravity = kStandardGravity * perUnit();
   options.drag = settings.wind == WindKind::None ? settings.drag : 0;
   options.radius = settings.collide ? settings.thickness * perUnit() : 0;
   options.lateral = settings.lateral;
-  COIF_ASSIGN(build, chainsFromMesh(mesh, options));
+  if (settings.wisps > 0) {
+    COIF_ASSIGN(wisps,
+                makeWisps(mesh, {settings.wisps, settings.guidePoints, settings.seed}, world.head, context));
+    std::vector<std::uint64_t> offsets;
+    for (std::size_t g = 0; g <= wisps->guideCount(); ++g) offsets.push_back(g * wisps->points);
+    COIF_ASSIGN(build, chainsFromCurves(wisps->guides, offsets, options));
+    if (settings.lateral > 0) addWispSprings();
+  } else {
+    COIF_ASSIGN(build, chainsFromMesh(mesh, options));
+  }
   if (build.chains.linkCount() == 0)
     return makeError(ErrorCode::Degenerate, "the hair mesh has no column of any length that could move");
   SolverOptions solverOptions;
   solverOptions.method = settings.method;
   solverOptions.gravity = -settings.gravity * perUnit() * up();
+  solverOptions.tolerance = settings.tolerance;
+  solverOptions.floatLanes = settings.singlePrecision;
+  solverOptions.skipBending = settings.skipBending;
+  solverOptions.sleepSpeed = settings.sleepSpeed * perUnit();
+  solverOptions.sleepSteps = int(std::clamp(std::ceil(settings.sleepSeconds / stepSeconds()), 1.0, 1e9));
   COIF_ASSIGN(solver, makeSolver(build.chains, solverOptions));
-  report.vertices = mesh.vertices().size();
+  report.vertices = build.nodeOf.size();
   report.chains = build.chains.treeCount();
   report.links = build.chains.linkCount();
+  report.limp = settings.skipBending ? simulate::limpTrees(build.chains) : 0;
   return {};
 }
 
-Status Simulation::Impl::makeCollisions(const Context& context) {
-  if (!settings.collide || (!world.head && settings.capsules.empty())) return {};
-  const double thickness = settings.thickness * perUnit();
-  CollisionOptions options;
-  options.stiffness = settings.contactStiffness;
-  options.friction = settings.friction;
-  options.slipSpeed = 1e-3 * perUnit();
-  collisions = std::make_unique<CollisionField>(options);
-  if (world.head) {
-    DistanceBandOptions bandOptions;
-    bandOptions.reach = std::max(3 * world.head->size() / 64, 2 * thickness);
-    if (world.band && world.band->reach() >= bandOptions.reach) {
-      band = world.band;
-    } else {
-      COIF_ASSIGN(DistanceBand made, DistanceBand::build(*world.head, bandOptions, context));
-      band = std::make_shared<const DistanceBand>(std::move(made));
-    }
-    report.band = band->report();
-    collisions->addCollider(*band);
-    withHead.push_back(1);
-  }
-  for (const BodyCapsule& capsule : settings.capsules) {
-    capsules.push_back(std::make_unique<CapsuleCollider>(capsule.a, capsule.b, capsule.radius));
-    collisions->addCollider(*capsules.back());
-    withHead.push_back(capsule.withHead);
-  }
-  // What was modelled closer than the thickness stays as close; what lies beneath the skin is left alone.
+/// A wisp's guides hold together as neighbouring columns do.
+void Simulation::Impl::addWispSprings() {
   ChainSet& chains = build.chains;
-  std::vector<std::uint8_t> exempt(chains.nodeCount(), 0);
-  for (std::size_t i = 0; i < chains.nodeCount(); ++i) {
-    exempt[i] = chains.parents[i] == kNone;
-    double nearest = thickness;
-    const auto look = [&](const Collider& collider) {
-      double distance = 0;
-      Vec3 normal;
-      if (collider.sample(chains.restPositions[i], distance, normal)) nearest = std::min(nearest, distance);
-    };
-    if (band) look(*band);
-    for (const auto& capsule : capsules) look(*capsule);
-    chains.radii[i] = std::clamp(nearest, 0.0, thickness);
-    if (nearest < -thickness) exempt[i] = 1;
-  }
-  collisions->exempt(std::move(exempt));
-  addField(collisions.get(), "collisions");
-  return {};
-}
-
-Status Simulation::Impl::makeAir() {
-  if (settings.wind == WindKind::None) return {};
-  const Vec3 mean = settings.windVelocity * perUnit();
-  if (settings.wind == WindKind::Constant) air = std::make_unique<ConstantWind>(mean);
-  if (settings.wind == WindKind::Gusts) {
-    air = std::make_unique<GustyWind>(GustOptions{mean, settings.gustSpeed * perUnit(),
-                                                  settings.gustSize * perUnit(), settings.gustSeconds,
-                                                  settings.seed});
-  }
-  if (settings.wind == WindKind::Fluid) {
-    const double thickness = std::max(settings.cell * perUnit(), 1e-12);
-    FluidOptions options;
-    options.mean = mean;
-    options.cells = settings.airCells;
-    std::vector<Vec3> points = build.chains.restPositions;
-    if (band)
-      points.insert(points.end(), world.head->mesh().positions.begin(), world.head->mesh().positions.end());
-    const Box rest = bounds(points);
-    Vec3 lo = rest.lo, hi = rest.hi;
-    for (std::size_t f = 0; f < path.frames(); ++f) {
-      for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 at(corner & 1 ? rest.hi[0] : rest.lo[0], corner & 2 ? rest.hi[1] : rest.lo[1],
-                      corner & 4 ? rest.hi[2] : rest.lo[2]);
-        lo = lo.cwiseMin(path.pose(double(f)).world(at));
-        hi = hi.cwiseMax(path.pose(double(f)).world(at));
+  const std::vector<std::uint32_t> treeOf = treeOfNodes(chains);
+  const auto link = [&](std::uint32_t node) {
+    return Vec3(chains.restPositions[node] - chains.restPositions[chains.parents[node]]);
+  };
+  for (const auto& guides : wisps->wisps) {
+    for (int side = 0; side < 3; ++side) {
+      const std::uint32_t g = guides[side], h = guides[(side + 1) % 3];
+      for (std::uint32_t k = 1; k < wisps->points && g != h; ++k) {
+        const std::uint32_t a = build.nodeOf[g * wisps->points + k], b = build.nodeOf[h * wisps->points + k];
+        if (a == kNone || b == kNone || chains.parents[a] == kNone || chains.parents[b] == kNone) continue;
+        const Vec3 rest = chains.rootFrames[treeOf[a]].transpose() * (link(b) - link(a));
+        chains.laterals.push_back({a, b, settings.lateral, rest});
       }
     }
-    const Vec3 margin = Vec3::Constant(0.3 * rest.diagonal());
-    options.lo = lo - margin;
-    options.hi = hi + margin;
-    // The rate is meant for the densest hair of the modelled style, on the density grid's cells.
-    RepulsionField probe({0, 0, thickness, 6, 1});
-    const std::vector<Vec3> still(build.chains.nodeCount(), Vec3::Zero());
-    probe.prepare({build.chains.restPositions, still, build.chains.masses, build.chains.radii}, 0, 1, {});
-    options.hairDrag = probe.maxDensity() > 0 ? settings.shelter / probe.maxDensity() : 0;
-    COIF_ASSIGN(auto made, FluidWind::create(options));
-    fluid = made.get();
-    air = std::move(made);
   }
-  drag = std::make_unique<DragField>(DragOptions{settings.drag, 0}, air.get());
-  addField(drag.get(), "wind");
-  return {};
 }
 
-void Simulation::Impl::makeRepulsion() {
-  if (settings.repulsion <= 0 && settings.hairFriction <= 0) return;
-  RepulsionOptions options{0, 0, settings.cell * perUnit(), 6, 1};
-  RepulsionField probe(options);
-  const std::vector<Vec3> still(build.chains.nodeCount(), Vec3::Zero());
-  probe.prepare({build.chains.restPositions, still, build.chains.masses, build.chains.radii}, 0, 1, {});
-  options.restDensity = settings.density * probe.maxDensity();
-  const double speed = settings.repulsion * perUnit();
-  options.stiffness = probe.maxDensity() > 0 ? speed * speed / probe.maxDensity() : 0;  // p = c² (ρ − ρ0)
-  options.friction = settings.hairFriction;
-  repulsion = std::make_unique<RepulsionField>(options);
-  addField(repulsion.get(), "repulsion");
-}
-
-void Simulation::Impl::addField(ForceField* field, const char* name) {
-  fields.push_back(field);
-  report.fields.push_back({name, 0, ""});
+void Simulation::Impl::rootAt(std::uint32_t source, double time, Vec3& position, Mat3& turn) const {
+  if (!wisps) return path.root(source, time, position, turn);
+  const WispSet::Root& root = wisps->roots[source / wisps->points];
+  path.point(root.vertices, root.weights, wisps->guides[source], time, position, turn);
 }
 
 /// The modelled mesh where the motion begins.
@@ -202,7 +89,7 @@ void Simulation::Impl::start() {
     const std::uint32_t root = build.chains.treeOffsets[t];
     Vec3 at;
     Mat3 turn;
-    path.root(build.chains.sources[root], 0, at, turn);
+    rootAt(build.chains.sources[root], 0, at, turn);
     const Vec3 rest = build.chains.restPositions[root];
     for (std::uint32_t i = root; i < build.chains.treeOffsets[t + 1]; ++i)
       state.positions[i] = at + turn * (build.chains.restPositions[i] - rest);
@@ -218,7 +105,7 @@ void Simulation::Impl::moveRoots(double time) {
   rootFrames.resize(chains.treeCount());
   for (std::size_t t = 0; t < chains.treeCount(); ++t) {
     Mat3 turn;
-    path.root(chains.sources[chains.treeOffsets[t]], time, rootPositions[t], turn);
+    rootAt(chains.sources[chains.treeOffsets[t]], time, rootPositions[t], turn);
     rootFrames[t] = turn * chains.rootFrames[t];
   }
 }
@@ -252,8 +139,11 @@ Status Simulation::Impl::step(double from, double to, double timeStep, const Con
 void Simulation::Impl::count(const StepReport& done) {
   ++report.steps;
   report.maxNewton = std::max(report.maxNewton, done.maxNewton);
-  newtonSum += done.meanNewton;
-  report.meanNewton = newtonSum / double(report.steps);
+  report.chainSteps += done.solved;
+  report.asleep += done.asleep;
+  report.inSingle = done.inSingle;
+  newtonSum += done.meanNewton * double(done.solved);
+  report.meanNewton = report.chainSteps > 0 ? newtonSum / double(report.chainSteps) : 0;
   for (const ChainFault& fault : done.faults)
     ++(fault.kind == ChainFaultKind::NotFinite ? report.resets : report.unconverged);
   for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -263,17 +153,19 @@ void Simulation::Impl::count(const StepReport& done) {
   if (collisions) report.collidingNodes = std::max(report.collidingNodes, collisions->nearCount());
 }
 
-/// Vertices where their nodes are; those without one are rigid with the head.
+/// Vertices or guides' points where their nodes are; those without one are rigid with the head.
 void Simulation::Impl::gather() {
   const RigidPose head = path.pose(double(frame));
-  positions.resize(mesh.vertices().size());
-  for (std::size_t v = 0; v < positions.size(); ++v) {
+  positions.resize(build.nodeOf.size());
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
     const std::uint32_t node = build.nodeOf[v];
     if (node != kNone) {
       positions[v] = state.positions[node];
+    } else if (wisps) {
+      positions[v] = head.world(wisps->guides[v]);
     } else if (mesh.vertices()[v].layer == 0) {
       Mat3 turn;
-      path.root(std::uint32_t(v), double(frame), positions[v], turn);
+      path.root(v, double(frame), positions[v], turn);
     } else {
       positions[v] = head.world(mesh.vertices()[v].position);
     }
@@ -300,12 +192,12 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const HairMesh& mesh, con
   impl->world = world;
   COIF_ASSIGN(impl->path, simulate::RootPath::create(mesh, world.motion));
   impl->report.stepsPerFrame = std::max(1, int(steps));
-  COIF_TRY(impl->makeChains());
+  COIF_TRY(impl->makeChains(context));
   COIF_TRY(impl->makeCollisions(context));
   COIF_TRY(impl->makeAir());
   impl->makeRepulsion();
   impl->start();
-  const double longest = 1 / (world.framesPerSecond * impl->report.stepsPerFrame);
+  const double longest = impl->stepSeconds();
   const auto settling = std::size_t(std::ceil(settings.settleSeconds / longest));
   for (std::size_t s = 0; s < settling; ++s) {
     if (context.cancelled()) return makeError(ErrorCode::Cancelled, "stopped while the hair settled");
@@ -332,11 +224,15 @@ const SimulationReport& Simulation::report() const {
   return impl_->report;
 }
 
+std::vector<LeftOut> Simulation::leftOut() const {
+  return simulate::leftOut(impl_->settings, impl_->report);
+}
+
 Status Simulation::advance(const Context& context) {
   const Stopwatch watch;
   Impl& s = *impl_;
   const int steps = s.report.stepsPerFrame;
-  const double timeStep = 1 / (s.world.framesPerSecond * steps);
+  const double timeStep = s.stepSeconds();
   const std::vector<std::byte> before = context.cancel ? state() : std::vector<std::byte>();
   for (int i = 0; i < steps; ++i) {
     if (context.cancelled()) {

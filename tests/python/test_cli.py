@@ -206,3 +206,20 @@ def test_hair_in_motion_is_a_picture_a_frame(scenes, tmp_path):
                                status=1).stderr
     assert "another hair mesh" in run("render", scenes / "bob.coif", "-o", tmp_path / "m.png", "--motion", cache,
                                       status=1).stderr
+
+
+def test_wisps_are_simulated_explained_and_shown(scenes, tmp_path):
+    scene, cache = scenes / "long.coif", tmp_path / "w.coifcache"
+    wisps = ["--wisps", 20, "--set", "guidePoints=8"]
+    done = run("simulate", scene, "--frames", 3, *wisps, "--set", "droop=0", "--explain", "-o", cache).stdout
+    for named in ["bending terms (skipBending): no joint", "(tolerance): what is left", "(repulsion): "]:
+        assert named in done, done
+    small = ["--size", "64x64", "--strands", 2000, *wisps, "--set", "droop=0"]
+    run("render", scene, "-o", tmp_path / "w.png", "--motion", cache, "--frames", "1-3", *small)
+    pictures = [(tmp_path / f"w_{k:04}.png").read_bytes() for k in (1, 2, 3)]
+    assert len(set(pictures)) == 3
+    assert "other wisps" in run("render", scene, "-o", tmp_path / "x.png", "--motion", cache, status=1).stderr
+    run("simulate", scene, "--frames", 2, *wisps, "--strands", 50, "-o", tmp_path / "w.usda")
+    assert "points.timeSamples" in (tmp_path / "w.usda").read_text()
+    refused = run("simulate", scene, "--set", "drop=1", "-o", tmp_path / "n.coifcache", status=1).stderr
+    assert "no dynamics setting named 'drop'" in refused and "droop" in refused

@@ -105,3 +105,49 @@ def test_a_chain_swings_with_the_period_of_a_pendulum():
         heights.append(chains.positions[1, 0])
     # It is at the far side, slowest, after half a period; the step's error is of the order (omega h)² / 24.
     assert abs(np.argmin(heights) * step - 2.00733 / 2) < 5e-3
+
+
+def test_wisps_carry_the_strands(scene):
+    scene.dynamics.wisps = 5
+    scene.dynamics.guide_points = 6
+    poses = np.stack([np.eye(4)] + [rotation_about_y(0.2)] * 9)
+    motion = scene.simulate(10, head_poses=poses, use_head=False)
+    assert motion.positions.shape[2] == 3 and motion.positions.shape[1] % 6 == 0
+    assert 0 < motion.positions.shape[1] <= 5 * 3 * 6
+    rest = scene.evaluate(use_head=False)
+    first = scene.strands_at(motion, 0, use_head=False)
+    # Frame 0 is the modelled style; guides are 32-bit floats of numbers below 10.
+    assert np.abs(first.points - rest.points).max() < 5e-6
+    last = scene.strands_at(motion, 9, use_head=False)
+    roots = np.asarray(rest.offsets[:-1], int)
+    expected = rest.points[roots] @ poses[9, :3, :3].T
+    assert np.abs(last.points[roots] - expected).max() < 5e-6
+    assert np.abs(last.points - rest.points @ poses[9, :3, :3].T).max() > 1e-3  # the rest lags behind
+    scene.dynamics.wisps = 0
+    with pytest.raises(coif.Error, match="no such frame"):
+        scene.strands_at(motion, 0, use_head=False)
+
+
+def test_what_was_left_out_has_a_switch(scene):
+    scene.dynamics.droop = 0
+    scene.simulate(3, use_head=False)
+    report = next(r for r in scene.reports if r.name == "simulate")
+    left = {part.switch: part for part in report.left_out}
+    assert left["skipBending"].share == 1
+    scene.dynamics.skip_bending = False
+    scene.dynamics.single_precision = True
+    scene.simulate(3, use_head=False)
+    left = {part.switch: part for r in scene.reports for part in r.left_out}
+    assert "skipBending" not in left and left["precision"].share == 1
+
+
+def test_a_deforming_scalp_moves_its_roots(scene):
+    placed = scene.placed_mesh()
+    positions = placed.positions
+    root = positions[:, 1] == 0
+    wider = [positions[root] * (1 + 0.02 * f) for f in range(6)]
+    motion = scene.simulate(6, root_positions=np.stack(wider), use_head=False)
+    # Each root is where it was asked to be; frames are 32-bit floats of numbers below 10.
+    assert np.abs(motion.positions[5][root] - wider[5]).max() < 2e-6
+    with pytest.raises(coif.Error, match="root vertices"):
+        scene.simulate(6, root_positions=np.zeros((6, 3, 3)), use_head=False)

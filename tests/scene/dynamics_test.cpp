@@ -5,10 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "coif/io/mesh_io.h"
 #include "coif/io/safe_file.h"
+#include "coif/scene/dynamics_text.h"
 #include "coif/scene/evaluate.h"
 #include "scene/sample_scene.h"
 
@@ -38,12 +40,17 @@ SimulateOptions frames(std::size_t count) {
 DynamicsSettings unlikeTheDefaults() {
   DynamicsSettings s;
   s.method = DynamicsMethod::EnergyKeeping;
-  double* numbers[] = {&s.longestStep, &s.settleSeconds,    &s.gravity,  &s.droop,       &s.lateral,
-                       &s.drag,        &s.gustSpeed,        &s.gustSize, &s.gustSeconds, &s.shelter,
-                       &s.thickness,   &s.contactStiffness, &s.friction, &s.repulsion,   &s.density,
-                       &s.cell,        &s.hairFriction};
+  double* numbers[] = {&s.longestStep, &s.settleSeconds,    &s.gravity,    &s.droop,       &s.lateral,
+                       &s.drag,        &s.gustSpeed,        &s.gustSize,   &s.gustSeconds, &s.shelter,
+                       &s.thickness,   &s.contactStiffness, &s.friction,   &s.repulsion,   &s.density,
+                       &s.cell,        &s.hairFriction,     &s.sleepSpeed, &s.sleepSeconds};
   double value = 0.1234567890123;
   for (double* number : numbers) *number = value += 0.01;
+  s.tolerance = 0.0123456789;
+  s.singlePrecision = true;
+  s.skipBending = false;
+  s.wisps = 57;
+  s.guidePoints = 9;
   s.wind = WindKind::Gusts;
   s.windVelocity = Vec3(1, -2, 0.3);
   s.seed = ~std::uint64_t{0};
@@ -69,6 +76,54 @@ TEST(DynamicsSettings, AreDefaultsInAnOlderFile) {
   const auto scene = parseScene(document.dump(), "old.coif");
   ASSERT_TRUE(scene.ok()) << scene.error().text();
   EXPECT_EQ(scene->dynamics, DynamicsSettings{});
+}
+
+// A file of before there were wisps, sleep and a choice of precision.
+TEST(DynamicsSettings, NewOnesAreDefaultsInAnOlderFile) {
+  Scene scene = test::sampleScene();
+  scene.dynamics.droop = 0.7;
+  json document = json::parse(sceneText(scene));
+  for (const char* key :
+       {"wisps", "guidePoints", "tolerance", "sleepSpeed", "sleepSeconds", "precision", "skipBending"})
+    EXPECT_EQ(document["dynamics"].erase(key), 1u) << key;
+  const auto again = parseScene(document.dump(), "old.coif");
+  ASSERT_TRUE(again.ok()) << again.error().text();
+  EXPECT_EQ(again->dynamics, scene.dynamics);
+}
+
+TEST(DynamicsSettings, AreSetByNameAndRefusedWithASentence) {
+  const DynamicsSettings wanted = unlikeTheDefaults();
+  Scene scene = test::sampleScene();
+  scene.dynamics = wanted;
+  const json all = json::parse(sceneText(scene))["dynamics"];
+  DynamicsSettings s;
+  s.capsules = wanted.capsules;
+  for (const std::string& name : dynamicsNames()) {
+    const json& value = all[name];
+    const std::string text = name == "windVelocity" ? "1,-2,0.3"
+                             : value.is_string()    ? value.get<std::string>()
+                                                    : value.dump();
+    EXPECT_TRUE(setDynamics(s, name, text).ok()) << name << " " << text;
+  }
+  EXPECT_EQ(s, wanted);
+  for (const auto& [name, value] :
+       std::vector<std::pair<std::string, std::string>>{{"drop", "1"},
+                                                        {"capsules", ""},
+                                                        {"droop", "much"},
+                                                        {"droop", "-1"},
+                                                        {"droop", ""},
+                                                        {"solver", "fast"},
+                                                        {"windVelocity", "1,2"},
+                                                        {"windVelocity", "1,2,3,4"},
+                                                        {"collide", "2"},
+                                                        {"wisps", "1e9"},
+                                                        {"wisps", "[]"}}) {
+    const Status refused = setDynamics(s, name, value);
+    ASSERT_FALSE(refused.ok()) << name << " " << value;
+    EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+    EXPECT_NE(refused.error().text().find(name), std::string::npos) << refused.error().text();
+  }
+  EXPECT_EQ(s, wanted);
 }
 
 TEST(DynamicsSettings, EveryBadValueIsRefusedByName) {
@@ -203,6 +258,91 @@ TEST(SimulateStage, WritesAMovingHeadAsTimeSamplesOfItsTransform) {
   ASSERT_NE(at, std::string::npos);
   // The last sample's translation: a row of its own, USD's points being rows.
   EXPECT_NE(text.find("(0.5, 0, 0, 1)", at), std::string::npos) << text.substr(at, 600);
+}
+
+// What was left out is named with its switch, its trigger and how much it was; each switch brings it back.
+TEST(SimulateStage, NamesWhatItLeftOut) {
+  Scene scene = test::sampleScene();
+  scene.dynamics.droop = 0;
+  scene.dynamics.drag = 20;
+  const auto leftOut = [&] {
+    Evaluation evaluation(noHead());
+    EXPECT_TRUE(evaluation.simulate(scene, frames(100)).ok());
+    const StageReport report = evaluation.reports().back();
+    const json parsed = json::parse(reportJson(evaluation.reports()))["stages"].back();
+    EXPECT_EQ(parsed["leftOut"].size(), report.leftOut.size());
+    std::map<std::string, double> shares;
+    for (const LeftOut& part : report.leftOut) {
+      shares[part.control] = part.share;
+      EXPECT_GT(part.share, 0) << part.what;
+      EXPECT_LE(part.share, 1) << part.what;
+      EXPECT_NE(
+          explainText(evaluation.reports()).find(part.what + " (" + part.control + "): " + part.trigger),
+          std::string::npos);
+    }
+    return shares;
+  };
+  auto shares = leftOut();
+  EXPECT_GT(shares["sleepSpeed"], 0.1);  // hair hangs still after a second or two of four
+  EXPECT_EQ(shares["skipBending"], 1);
+  EXPECT_GT(shares["tolerance"], 0.99);
+  EXPECT_EQ(shares["repulsion"], 1);
+  EXPECT_EQ(shares["collide"], 1);
+  EXPECT_EQ(shares["wind"], 1);
+  EXPECT_FALSE(shares.contains("precision"));
+  scene.dynamics.sleepSpeed = 0;
+  scene.dynamics.skipBending = false;
+  scene.dynamics.singlePrecision = true;
+  scene.dynamics.repulsion = scene.dynamics.density = 1;
+  scene.dynamics.wind = WindKind::Constant;
+  scene.dynamics.capsules.push_back({Vec3(0, 500, 0), Vec3(0, 500, 0), 1, true});  // far away
+  shares = leftOut();
+  EXPECT_FALSE(shares.contains("sleepSpeed"));
+  EXPECT_FALSE(shares.contains("skipBending"));
+  EXPECT_FALSE(shares.contains("wind"));
+  EXPECT_EQ(shares["precision"], 1);
+  EXPECT_EQ(shares["collide"], 1);  // there is something to collide with, and nothing reaches it
+}
+
+// Guides of wisps through the document: frame 0 is the modelled style, a turned head turns every strand.
+TEST(SimulateStage, WispsCarryTheStrandsOfAFrame) {
+  Scene scene = test::sampleScene();
+  scene.strands.count = 80;
+  scene.dynamics.gravity = 0;
+  scene.dynamics.wisps = 6;
+  scene.dynamics.guidePoints = 7;
+  Evaluation evaluation(noHead());
+  SimulateOptions what = frames(3);
+  const Mat3 turn = Eigen::AngleAxisd(1, Vec3(0, 1, 0)).toRotationMatrix();
+  what.motion.poses = {{turn, Vec3(3, 0, 0)}};
+  what.cache = folder() / "wisps.coifcache";
+  std::filesystem::remove(what.cache);
+  const auto motion = evaluation.simulate(scene, what);
+  ASSERT_TRUE(motion.ok()) << motion.error().text();
+  EXPECT_EQ((*motion)->vertexCount, *evaluation.movedPoints(scene));
+  EXPECT_LE((*motion)->vertexCount, 6u * 3 * 7);
+  const StrandSet rest = **evaluation.strands(scene);
+  for (const std::size_t frame : {0, 2}) {
+    const auto posed = evaluation.strandsAt(scene, **motion, frame);
+    ASSERT_TRUE(posed.ok()) << posed.error().text();
+    EXPECT_EQ(posed->ids, rest.ids);
+    for (std::size_t p = 0; p < rest.points.size(); ++p) {
+      const Vec3 expected = turn * rest.points[p].cast<double>() + Vec3(3, 0, 0);
+      // Guides are floats: a few units of 1e-7 of the size.
+      ASSERT_LE((posed->points[p].cast<double>() - expected).norm(), 1e-5 * (1 + expected.norm())) << p;
+    }
+  }
+  EXPECT_FALSE(evaluation.meshAt(scene, **motion, 0).ok());  // with a sentence: wisps move no mesh
+  const auto written = evaluation.exportMotion(scene, what, folder() / "wisps.usda");
+  ASSERT_TRUE(written.ok()) << written.error().text();
+  // A file of it is gone on with by another evaluation.
+  Evaluation second(noHead());
+  what.frames = 5;
+  const auto longer = second.simulate(scene, what);
+  ASSERT_TRUE(longer.ok());
+  EXPECT_EQ(second.simulationReport()->frames, 2u);
+  scene.dynamics.wisps = 0;
+  EXPECT_FALSE(second.strandsAt(scene, **longer, 0).ok());  // of another scene
 }
 
 TEST(Cache, RoundTripsAndRefusesEveryCutAndEveryChangedByte) {

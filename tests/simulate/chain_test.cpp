@@ -92,18 +92,5 @@ TEST(Chains, FibreRigidityIsThatOfARoundBeam) {
   EXPECT_NEAR(fibreRigidity(4e9, 35e-6), 4e9 * 3.14159265358979 * 35e-6 * 35e-6 * 35e-6 * 35e-6 / 4, 1e-22);
 }
 
-TEST(Wisps, ThreeGuidesGiveTheirMeanAndTheirEnds) {
-  const std::vector<Vec3> points{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {3, 0, 0}, {3, 0, 4}, {0, 3, 0}, {0, 3, 1}};
-  const std::vector<std::uint64_t> offsets{0, 3, 5, 7};
-  const ChainSet c = chainsFromCurves(points, offsets).value().chains;
-  const std::vector<WispStrand> strands{{{0, 1, 2}, {1, 0, 0}}, {{0, 1, 2}, {1 / 3., 1 / 3., 1 / 3.}}};
-  std::vector<Vec3f> out(10);
-  ASSERT_TRUE(interpolateWisps(c, c.restPositions, strands, 5, out).ok());
-  EXPECT_EQ(out[4], Vec3f(0, 0, 2));
-  EXPECT_LE((out[9] - Vec3f(1, 1, 7 / 3.f)).norm(), 1e-6f);  // float
-  EXPECT_LE((out[7] - Vec3f(1, 1, 7 / 6.f)).norm(), 1e-6f);  // halfway along each
-  EXPECT_FALSE(interpolateWisps(c, c.restPositions, strands, 4, out).ok());
-}
-
 }  // namespace
 }  // namespace coif

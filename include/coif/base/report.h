@@ -16,6 +16,15 @@ struct ErrorEstimate {
   std::string method;  ///< how it was estimated
 };
 
+/// Work that a scene did not need.
+struct LeftOut {
+  std::string what;     ///< "bending terms"
+  std::string control;  ///< the setting that has a say in it: its switch
+  std::string trigger;  ///< why it could be left out
+  double share = 0;     ///< how much of `of`, above 0 to 1
+  std::string of;       ///< "chains", "steps", …
+};
+
 struct StageReport {
   std::string name;
   StageState state = StageState::Ran;
@@ -23,6 +32,7 @@ struct StageReport {
   double seconds = 0;
   std::uint64_t bytes = 0;  ///< of the stage's result
   ErrorEstimate error;
+  std::vector<LeftOut> leftOut;
   std::vector<std::string> notes;  ///< counts and warnings, a sentence each
 };
 

@@ -60,13 +60,17 @@ class Evaluation {
   /// cache of another simulation is an error, never overwritten.
   Result<const DynamicsCache*> simulate(const Scene& scene, const SimulateOptions& what,
                                         const Context& context = {});
+  /// How many points a frame of the scene's motion has: the placed mesh's vertices, or with wisps their
+  /// guides' points.
+  Result<std::size_t> movedPoints(const Scene& scene, const Context& context = {});
   /// The hair mesh on a frame of `motion`, in the head's own frame: DynamicsCache::poses says where that is.
-  /// Errors: InvalidArgument for a frame that it does not have or another mesh.
+  /// Errors: InvalidArgument for a frame that it does not have, another mesh, or wisps, which move no mesh.
   Result<HairMesh> meshAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
                           const Context& context = {});
   /// The strands on a frame of `motion`, the same strands on each: grown in the head's own frame, where its
-  /// roots are at rest. Fixed points a strand, whatever the scene's tolerance. With a deforming scalp roots
-  /// follow the cage alone. Errors: those of meshAt.
+  /// roots are at rest, or carried by the scene's wisps. Fixed points a strand, whatever the scene's
+  /// tolerance. With a deforming scalp roots follow the cage, or their wisp's guides, alone. Errors: those of
+  /// meshAt.
   Result<StrandSet> strandsAt(const Scene& scene, const DynamicsCache& motion, std::size_t frame,
                               const Context& context = {});
   /// Writes all frames as USD time samples (.usda, .usdc): points of the strands, transform of a head that

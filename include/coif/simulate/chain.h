@@ -6,7 +6,6 @@
 // are held and nothing twists. Units are the caller's own, consistently (NodeView says the same).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -96,18 +95,6 @@ Result<ChainBuild> chainsFromCurves(std::span<const Vec3> points, std::span<cons
 
 /// Moves the mesh's vertices to where their nodes are; vertices without a node stay.
 void moveMesh(HairMesh& mesh, const ChainBuild& build, std::span<const Vec3> positions);
-
-/// A strand hung between three guide chains (Yuksel et al.'s wisps): its point at a fraction of its length is
-/// Σ weights · the guides' points at that fraction.
-struct WispStrand {
-  std::array<std::uint32_t, 3> trees{};
-  std::array<double, 3> weights{};  ///< barycentric coordinates of the root, Σ = 1
-};
-/// `out` holds strands.size() × pointsPerStrand points. Guides are plain chains (the first child is
-/// followed). Errors: InvalidArgument for trees that do not exist or sizes that do not fit.
-Status interpolateWisps(const ChainSet& chains, std::span<const Vec3> positions,
-                        std::span<const WispStrand> strands, std::size_t pointsPerStrand,
-                        std::span<Vec3f> out);
 
 /// Frames of the links at `positions` (N; entry of a root: its root frame), by parallel transport from
 /// `rootFrames` (T). Columns: normal, binormal, link direction.

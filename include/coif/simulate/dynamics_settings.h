@@ -24,7 +24,19 @@ struct BodyCapsule {
 struct DynamicsSettings {
   DynamicsMethod method = DynamicsMethod::Direct;
   double longestStep = 1.0 / 120;  ///< frames are cut into steps at most this long
-  double settleSeconds = 0;        ///< time before the first frame in which hair finds its hang
+  /// Newton stops once what is left would move no node by more than this fraction of the mean link: far
+  /// below a tenth of a pixel. 0: to rounding.
+  double tolerance = 1e-6;
+  bool singlePrecision = false;  ///< SolverOptions::floatLanes
+  bool skipBending = true;       ///< SolverOptions::skipBending
+  /// Chains that were slower than sleepSpeed (m/s) for sleepSeconds are left as they are until something
+  /// moves or pulls them. 0: never.
+  double sleepSpeed = 1e-4, sleepSeconds = 0.1;
+  double settleSeconds = 0;  ///< time before the first frame in which hair finds its hang
+
+  /// What is simulated: the columns of the hair mesh, or so many wisps of three guides each (wisps.h).
+  std::size_t wisps = 0;
+  std::uint32_t guidePoints = 12;  ///< of a guide
 
   double gravity = 9.81;  ///< against the up axis
   /// How far a column held level droops under its weight, as a fraction of its length; 0: limp.

@@ -1,5 +1,5 @@
 // A hairstyle in motion: hair mesh, settings, head and its motion in; positions of the mesh's vertices, frame
-// by frame, out. Strands follow the mesh by themselves.
+// by frame, out, or those of wisps' guides. Strands follow the mesh by themselves, wisps by carryStrands().
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coif/base/context.h"
+#include "coif/base/report.h"
 #include "coif/base/result.h"
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/scalp/surface.h"
@@ -46,10 +47,13 @@ struct SimulationReport {
   std::size_t frames = 0, steps = 0;  ///< done by this object
   int stepsPerFrame = 0;
   double seconds = 0;
+  std::size_t chainSteps = 0;          ///< solved, summed over steps
+  std::size_t asleep = 0;              ///< chains left as they were, summed over steps
+  std::size_t limp = 0, inSingle = 0;  ///< chains without bending terms, chains in single precision
   int maxNewton = 0;
-  double meanNewton = 0;
-  std::size_t resets = 0;       ///< chains that were not finite and were reset, summed over steps
-  std::size_t unconverged = 0;  ///< chains that kept their best iterate, summed over steps
+  double meanNewton = 0;           ///< of a chain that is solved
+  std::size_t resets = 0;          ///< chains that were not finite and were reset, summed over steps
+  std::size_t unconverged = 0;     ///< chains that kept their best iterate, summed over steps
   double maxStretch = 0;           ///< greatest relative length error of a link, over all frames
   std::size_t collidingNodes = 0;  ///< looked at, greatest of a step
   DistanceBandReport band;         ///< of the head
@@ -67,9 +71,10 @@ class Simulation {
                                                     const Context& context = {});
   ~Simulation();
 
-  std::size_t frame() const;                ///< where it is
-  std::span<const Vec3> positions() const;  ///< of every vertex of the mesh there, scene units
-  RigidPose pose() const;                   ///< of the head there; with roots given, the best rigid fit
+  std::size_t frame() const;  ///< where it is
+  /// Of every vertex of the mesh there, scene units; with wisps, of every guide's points (WispSet::guides).
+  std::span<const Vec3> positions() const;
+  RigidPose pose() const;  ///< of the head there; with roots given, the best rigid fit
   /// One frame on. Chains that fail are reset and counted. Errors: Cancelled, with the frame as it was.
   Status advance(const Context& context = {});
 
@@ -80,6 +85,8 @@ class Simulation {
   Status restore(std::span<const std::byte> state);
 
   const SimulationReport& report() const;
+  /// What the frames so far did not need, with its switch and trigger.
+  std::vector<LeftOut> leftOut() const;
   /// The head's distances, for the next Simulation of the same head; null without collisions.
   std::shared_ptr<const DistanceBand> band() const;
 
@@ -99,6 +106,7 @@ struct DrapeReport {
   double greatestMove = 0;  ///< of any vertex, scene units
   double lastMove = 0;      ///< in the last 1/24 s
   SimulationReport simulation;
+  std::vector<LeftOut> leftOut;
 };
 /// Lets the mesh hang under gravity until it rests and leaves its vertices there: a modelling operation, for
 /// History::apply. Roots stay; lengths of columns are kept. Wind and head motion are left out. Errors: those
