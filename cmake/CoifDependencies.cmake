@@ -23,6 +23,13 @@ if(COIF_WITH_EMBREE)
   coif_system_library(embree embree3/rtcore.h embree3)
 endif()
 find_package(OpenEXR 3 REQUIRED CONFIG)
+if(COIF_WITH_ALEMBIC)
+  find_package(Alembic QUIET CONFIG)
+  if(NOT TARGET Alembic::Alembic)
+    message(STATUS "Alembic is not installed: .abc is left out")
+    set(COIF_WITH_ALEMBIC OFF)
+  endif()
+endif()
 
 # libigl: an installed package, else the upstream sources at a pinned tag, else what
 # scripts/setup.sh unpacked from Debian's source package (see there).

@@ -62,9 +62,15 @@ Status simulate(const SimulateArguments& arguments, Session& session) {
   }
   const std::string extension = std::filesystem::path(arguments.output).extension().string();
   const bool cache = extension == ".coifcache";
-  if (!cache && extension != ".usda" && extension != ".usdc" && extension != ".usd") {
+  if (extension == ".abc" && !writesAlembic()) {
     return makeError(ErrorCode::Unsupported,
-                     "hair in motion is written as .coifcache, .usda or .usdc (glTF and .hair hold one pose)",
+                     "this Coif was built without Alembic; Blender reads the .usdc and writes .abc", "",
+                     arguments.output);
+  }
+  if (!cache && extension != ".usda" && extension != ".usdc" && extension != ".usd" && extension != ".abc") {
+    return makeError(ErrorCode::Unsupported,
+                     "hair in motion is written as .coifcache, .usda, .usdc or .abc (glTF and .hair hold one "
+                     "pose)",
                      "", arguments.output);
   }
   if (cache) what.cache = arguments.output;
@@ -129,7 +135,7 @@ void addSimulate(CLI::App& app, Session& session) {
       "A .coifcache that is already there is gone on with if it is of the same simulation.\n"
       "Example:\n  coif simulate long.coif --frames 48 --fps 24 -o long.coifcache\n");
   command->add_option("scene", arguments->scene, "The scene, a .coif file")->required();
-  command->add_option("-o,--output", arguments->output, "A .coifcache, .usda or .usdc file to write")
+  command->add_option("-o,--output", arguments->output, "A .coifcache, .usda, .usdc or .abc file to write")
       ->required();
   command->add_option("--frames", arguments->what.frames, "How many frames")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));

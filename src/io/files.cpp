@@ -14,7 +14,7 @@ namespace {
 using io::Bytes;
 namespace fs = std::filesystem;
 
-enum class Format { Unknown, Obj, Ply, Off, Stl, Gltf, Hair, Usd };
+enum class Format { Unknown, Obj, Ply, Off, Stl, Gltf, Hair, Usd, Alembic };
 
 std::string extensionOf(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -24,7 +24,7 @@ std::string extensionOf(const fs::path& path) {
 }
 
 Format formatOfExtension(const std::string& extension) {
-  constexpr std::array<std::pair<std::string_view, Format>, 10> kFormats{{{".obj", Format::Obj},
+  constexpr std::array<std::pair<std::string_view, Format>, 11> kFormats{{{".obj", Format::Obj},
                                                                           {".ply", Format::Ply},
                                                                           {".off", Format::Off},
                                                                           {".stl", Format::Stl},
@@ -33,7 +33,8 @@ Format formatOfExtension(const std::string& extension) {
                                                                           {".hair", Format::Hair},
                                                                           {".usd", Format::Usd},
                                                                           {".usda", Format::Usd},
-                                                                          {".usdc", Format::Usd}}};
+                                                                          {".usdc", Format::Usd},
+                                                                          {".abc", Format::Alembic}}};
   for (const auto& [name, format] : kFormats) {
     if (extension == name) return format;
   }
@@ -124,6 +125,7 @@ Result<StrandSet> readStrands(Bytes bytes, const fs::path& path) {
     case Format::Usd:
       return io::readUsdStrands(bytes, path);
     case Format::Unknown:
+    case Format::Alembic:
       return makeError(ErrorCode::Unsupported, "no strand format is known by this content or extension");
     default:
       return makeError(ErrorCode::Unsupported, "the file holds a mesh, not strands");
@@ -200,9 +202,12 @@ Result<WriteReport> saveStrands(const StrandExport& what, const fs::path& path, 
       return io::writeGltf(what, path, context);
     case Format::Usd:
       return io::writeUsd(what, path, context);
+    case Format::Alembic:
+      return io::writeAlembic(what, path, context);
     default:
       return makeError(ErrorCode::Unsupported,
-                       "strands are written as .usda, .usdc, .usd, .gltf, .glb or .hair", {}, path.string());
+                       "strands are written as .usda, .usdc, .usd, .abc, .gltf, .glb or .hair", {},
+                       path.string());
   }
 }
 

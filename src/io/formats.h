@@ -35,6 +35,9 @@ Result<WriteReport> writeHair(const StrandExport& what, const std::filesystem::p
                               const Context& context);
 Result<WriteReport> writeGltf(const StrandExport& what, const std::filesystem::path& path,
                               const Context& context);
+/// Unsupported without COIF_WITH_ALEMBIC.
+Result<WriteReport> writeAlembic(const StrandExport& what, const std::filesystem::path& path,
+                                 const Context& context);
 Result<WriteReport> writeUsd(const StrandExport& what, const std::filesystem::path& path,
                              const Context& context);
 

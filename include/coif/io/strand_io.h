@@ -1,4 +1,4 @@
-// Strands in and out: USD BasisCurves (.usda, .usdc), glTF (.gltf, .glb), cyHair (.hair).
+// Strands in and out: USD BasisCurves (.usda, .usdc), glTF (.gltf, .glb), cyHair (.hair); out: Alembic (.abc).
 #pragma once
 
 #include <filesystem>
@@ -29,10 +29,10 @@ struct StrandFrame {
 struct StrandExport {
   const StrandSet* strands = nullptr;  ///< required
   const HairMesh* hairMesh = nullptr;  ///< written beside the strands as an ordinary mesh (USD, glTF)
-  const PolygonMesh* head = nullptr;   ///< written beside the strands (USD, glTF)
+  const PolygonMesh* head = nullptr;   ///< written beside the strands (USD, glTF, Alembic)
   const StrandSkin* skin = nullptr;    ///< binds all three to the head's skeleton (USD)
-  std::vector<StrandFrame> frames;     ///< USD time samples; empty: static
-  /// World from head by frame, affine, as many as there are frames (USD); empty: the head stands still.
+  std::vector<StrandFrame> frames;     ///< time samples (USD, Alembic); empty: static
+  /// World from head by frame, affine, as many as there are frames (USD, Alembic); empty: the head stands still.
   std::vector<Eigen::Matrix4d> headPoses;
   double timeCodesPerSecond = 24;
   StrandMesh mesh = StrandMesh::Cards;  ///< glTF fall-back mesh
@@ -51,6 +51,9 @@ struct WriteReport {
 /// format's limit: 65 536 points a strand in .hair, 4 GiB in .glb).
 Result<WriteReport> saveStrands(const StrandExport& what, const std::filesystem::path& path,
                                 const Context& context = {});
+
+/// Whether this build writes .abc: COIF_WITH_ALEMBIC, where the library was found.
+bool writesAlembic();
 
 /// Reads .hair, .usda BasisCurves, .usdc BasisCurves written by Coif, and the strands of a .glb/.gltf written
 /// by Coif. Errors as loadPolygonMesh.
