@@ -126,6 +126,16 @@ DynamicsCache simulateScene(SceneModel& model, std::size_t frames, double fps, c
       });
 }
 
+WriteReport exportMotion(SceneModel& model, const std::filesystem::path& path, std::size_t frames, double fps,
+                         const nb::object& poses, const nb::object& roots, bool useHead, int threads,
+                         nb::object progress) {
+  const SimulateOptions what = simulateOptions(frames, fps, poses, roots, {});
+  return model.use(optionsOf(useHead, {}), threads, std::move(progress),
+                   [&](Evaluation& evaluation, const Scene& scene, const Context& context) {
+                     return evaluation.exportMotion(scene, what, path, context);
+                   });
+}
+
 Strands strandsAt(SceneModel& model, const DynamicsCache& motion, std::size_t frame, bool useHead,
                   int threads) {
   return model.use(
@@ -307,6 +317,13 @@ void bindScene(nb::module_& m) {
         "vertices instead. cache: a .coifcache that is gone on with, with the same bytes, and kept up to "
         "date.\n"
         "The interpreter lock is released. Raises Error.")
+      .def("export_motion", &exportMotion, "path"_a, "frames"_a, nb::kw_only(), "fps"_a = 24.0,
+           "head_poses"_a.none() = nb::none(), "root_positions"_a.none() = nb::none(), "use_head"_a = true,
+           "threads"_a = 0, "progress"_a.none() = nb::none(),
+           "Simulates as simulate() does, and writes every frame: strands and head as time samples of a "
+           ".usda, "
+           ".usdc or,\n"
+           "where this build has Alembic, .abc file. Returns a WriteReport. Raises Error.")
       .def("strands_at", &strandsAt, "motion"_a, "frame"_a, nb::kw_only(), "use_head"_a = true,
            "threads"_a = 0,
            "The strands on a frame of a Motion of this scene: the same strands on every frame.")

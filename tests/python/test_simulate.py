@@ -151,3 +151,12 @@ def test_a_deforming_scalp_moves_its_roots(scene):
     assert np.abs(motion.positions[5][root] - wider[5]).max() < 2e-6
     with pytest.raises(coif.Error, match="root vertices"):
         scene.simulate(6, root_positions=np.zeros((6, 3, 3)), use_head=False)
+
+
+def test_motion_is_written_as_time_samples(scene, tmp_path):
+    report = scene.export_motion(tmp_path / "m.usda", 3, fps=30, use_head=False)
+    text = (tmp_path / "m.usda").read_text()
+    assert report.bytes == len(text.encode()) and "timeCodesPerSecond = 30" in text
+    assert "point3f[] points.timeSamples" in text
+    with pytest.raises(coif.Error, match="are written as"):
+        scene.export_motion(tmp_path / "m.obj", 3, use_head=False)
