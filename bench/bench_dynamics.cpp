@@ -184,11 +184,15 @@ void measureGrid(const BenchOptions& options, BenchReport& report) {
     if (method < DynamicsMethod::Direct) continue;
     add("chain-steps that stopped at 20 Newton steps", double(sum.notConverged) / sum.chainSteps, "of all",
         -1);
+    std::ranges::sort(sum.left);
+    if (!sum.left.empty())
+      add("of these, a node still moved in the last step by, median", sum.left[sum.left.size() / 2],
+          "of a link", -1);
     add("Newton steps, mean", sum.meanNewton, "", -1);
     add("Newton steps, most", sum.mostNewton, "", 20);
   }
   GridTally floats;
-  for (const std::size_t links : {1u, 2u, 30u}) {
+  for (const std::size_t links : {1u, 2u, 30u, 1000u}) {
     for (const double h : {1. / 240, 1. / 24, 1.})
       floats += runGrid(DynamicsMethod::Direct, links, h, 4, true);
   }

@@ -133,6 +133,7 @@ GridTally& GridTally::operator+=(const GridTally& o) {
   wronglyReset += o.wronglyReset, notConverged += o.notConverged;
   mostNewton = std::max(mostNewton, o.mostNewton);
   stretch = std::max(stretch, o.stretch);
+  left.insert(left.end(), o.left.begin(), o.left.end());
   return *this;
 }
 
@@ -159,7 +160,10 @@ GridTally runGrid(DynamicsMethod method, std::size_t links, double timeStep, int
     for (const ChainFault& fault : report.faults) {
       const GridDefect defect = g.cases[fault.tree].defect;
       const bool due = defect == GridDefect::NaNForce || (defect == GridDefect::CoincidentNodes && k == 1);
-      tally.notConverged += fault.kind == ChainFaultKind::NotConverged;
+      if (fault.kind == ChainFaultKind::NotConverged) {
+        ++tally.notConverged;
+        tally.left.push_back(fault.left);
+      }
       tally.wronglyReset += fault.kind == ChainFaultKind::NotFinite && !due;
     }
     watch.look(g);

@@ -46,6 +46,7 @@ struct GridTally {
   int mostNewton = 0;
   double stretch = 0;  ///< the greatest
   double meanNewton = 0;
+  std::vector<double> left;  ///< of those that stopped: how far the last step moved a node, of a link
   GridTally& operator+=(const GridTally& other);
 };
 

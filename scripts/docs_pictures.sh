@@ -14,6 +14,12 @@ say "draping"
 "$BUILD/bin/coif" -q drape build/pictures/long.coif -o build/pictures/draped.coif --seconds 4 --droop 2
 "$BUILD/bin/coif" -q render build/pictures/long.coif -o docs/pictures/drape-before.png --strands 15000 --size 300x300
 "$BUILD/bin/coif" -q render build/pictures/draped.coif -o docs/pictures/drape-after.png --strands 15000 --size 300x300
+say "wind"
+for kind in columns:0 wisps:120; do
+  "$BUILD/bin/coif" -q render build/pictures/long.coif -o build/pictures/motion-${kind%:*}.png --frames 24-24 --strands 15000 \
+    --size 300x300 --wisps ${kind#*:} --wind constant --set windVelocity=6,0,0
+  mv build/pictures/motion-${kind%:*}_0024.png docs/pictures/motion-${kind%:*}.png
+done
 for example in examples/[0-9]*.py; do
   say "$example"
   PYTHONPATH=$BUILD/python "$VENV/bin/python" "$example" -o build/pictures --size "${SIZE:-250}"

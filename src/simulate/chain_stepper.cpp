@@ -61,6 +61,7 @@ ChainStepper::ChainStepper(const ChainSet& chains, const SolverOptions& options)
   knownFrames_.assign(trees, Mat3::Identity());
   treeFaults_.resize(trees);
   newton_.resize(trees);
+  lastMove_.resize(trees);
   asleep_.resize(trees);
   faults_.reserve(trees);
 }
@@ -250,7 +251,8 @@ void ChainStepper::finish(ChainState& state, double timeStep, StepReport& report
     if (treeFaults_[t] != lanes::LaneFault::None) {
       const bool finite = treeFaults_[t] == lanes::LaneFault::NotConverged;
       if (!finite) reset(t);
-      faults_.push_back({t, finite ? ChainFaultKind::NotConverged : ChainFaultKind::NotFinite});
+      faults_.push_back({t, finite ? ChainFaultKind::NotConverged : ChainFaultKind::NotFinite,
+                         finite ? lastMove_[t] / meanLength_ : 0});
     }
     report.asleep += asleep_[t] != 0;
     report.solved += asleep_[t] == 0;

@@ -66,7 +66,7 @@ class ChainStepper : public Solver {
   std::vector<Vec3> rootPositions_;
   std::vector<Mat3> rootFrames_;
   std::vector<lanes::LaneFault> treeFaults_;
-  std::vector<double> newton_;
+  std::vector<double> newton_, lastMove_;
 
  private:
   Status check(const ChainState& state, double timeStep, const RootMotion& roots) const;

@@ -113,7 +113,7 @@ class Direct : NewtonSystem<T, L, kBend, kCurved> {
   void newton() {
     start();
     M active = load(b_.active) > 0;
-    V steps = all(0), previous = all(0);
+    V steps = all(0), previous = all(0), lastMove = all(0);
     const V tolerance = all(T(c_.tolerance));
     clearFaults();
     markFaults(~(value_ < all(limit())) & active, LaneFault::NotFinite, active);
@@ -123,13 +123,14 @@ class Direct : NewtonSystem<T, L, kBend, kCurved> {
       markFaults(~(decrease < all(limit())) | ~(size < all(limit())), LaneFault::NotFinite, active);
       steps = pick(active, steps + 1, steps);
       // Superlinear: what is left after this step is about size · (size / previous).
+      lastMove = pick(active, size, lastMove);
       const M last =
           (size * Base::min(size / previous, all(1)) <= tolerance) | (decrease <= all(noise()) * scale_);
       search(active, decrease);
       previous = size;
       active &= ~last;
     }
-    store(b_.newtonSteps, steps);
+    store(b_.newtonSteps, steps), store(b_.lastMove, lastMove);
     markFaults(active, LaneFault::NotConverged, active);
   }
 
@@ -340,7 +341,7 @@ class Direct : NewtonSystem<T, L, kBend, kCurved> {
     markFaults(~(decrease < all(limit())) | ~(size < all(limit())), LaneFault::NotFinite, active);
     positions(true, all(1));
     accept();
-    store(b_.newtonSteps, all(1));
+    store(b_.newtonSteps, all(1)), store(b_.lastMove, all(0));
   }
 
   // End-of-step positions by re-accumulating unit links, and velocities.

@@ -69,11 +69,11 @@ struct Block {
   NodeWork<T, L>* work = nullptr;
   Stash<T, L>* stashes = nullptr;
   bool bend = false, curved = false, anyFree = false, lateral = false;
-  alignas(64) T rootAxes[9][L];  ///< columns of the root frame for this step: normal, binormal, z
-  T active[L], freeRoot[L];      ///< 1 or 0
-  T driven[L];                   ///< 1: the root is moved or turned in this step and does work
-  T newtonSteps[L];              ///< out
-  LaneFault fault[L];            ///< out
+  alignas(64) T rootAxes[9][L];   ///< columns of the root frame for this step: normal, binormal, z
+  T active[L], freeRoot[L];       ///< 1 or 0
+  T driven[L];                    ///< 1: the root is moved or turned in this step and does work
+  T newtonSteps[L], lastMove[L];  ///< out; lastMove: of any node in the last Newton step
+  LaneFault fault[L];             ///< out
   /// Writes force and stiffness for every node at start + move with work.v; null without fields.
   void (*fields)(void* context) = nullptr;
   void* context = nullptr;

@@ -228,6 +228,7 @@ void LaneBlocks<T, L>::scatter(const LaneBlock& block, const lanes::Block<T, L>&
     const std::uint32_t tree = block.trees[l];
     stepper_.treeFaults_[tree] = in.fault[l];
     stepper_.newton_[tree] = std::max(stepper_.newton_[tree], double(in.newtonSteps[l]));
+    stepper_.lastMove_[tree] = double(in.lastMove[l]);
     const std::uint32_t root = block.roots[l];
     // A prescribed root is where it has to be to the bit, and the chain with it: T may not hold how far it
     // went.

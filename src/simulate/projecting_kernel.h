@@ -31,7 +31,7 @@ class Projecting : Lane<T, L> {
     }
     for (int l = 0; l < L; ++l) {
       b_.fault[l] = bad[l] != 0 ? LaneFault::NotFinite : LaneFault::None;
-      b_.newtonSteps[l] = 1;
+      b_.newtonSteps[l] = 1, b_.lastMove[l] = 0;
     }
   }
 

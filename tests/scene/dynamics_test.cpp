@@ -190,6 +190,33 @@ TEST(SimulateStage, ResumesFromAFileWithTheSameBytes) {
   EXPECT_EQ(readFile(what.cache).value(), readFile(part.cache).value());
 }
 
+// Stopped in the middle: what is done is in the file, and going on gives the bytes of a run that was left
+// alone.
+TEST(SimulateStage, AnInterruptedRunGoesOnWithTheSameBytes) {
+  const Scene scene = test::sampleScene();
+  SimulateOptions what = frames(9);
+  what.cache = folder() / "alone.coifcache";
+  std::filesystem::remove(what.cache);
+  ASSERT_TRUE(Evaluation(noHead()).simulate(scene, what).ok());
+  SimulateOptions cut = frames(9);
+  cut.cache = folder() / "cut.coifcache";
+  std::filesystem::remove(cut.cache);
+  std::atomic<bool> cancel = false;
+  Context context;
+  context.cancel = &cancel;
+  context.progress = [&](std::string_view stage, double fraction) {
+    if (stage == "simulating" && fraction > 0.4) cancel = true;
+  };
+  const auto stopped = Evaluation(noHead()).simulate(scene, cut, context);
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_EQ(stopped.error().code, ErrorCode::Cancelled);
+  const std::size_t kept = loadCache(cut.cache).value().frameCount();
+  EXPECT_GT(kept, 1u);
+  EXPECT_LT(kept, 9u);
+  ASSERT_TRUE(Evaluation(noHead()).simulate(scene, cut).ok());
+  EXPECT_EQ(readFile(what.cache).value(), readFile(cut.cache).value());
+}
+
 TEST(SimulateStage, StrandsOfAFrameAreThoseOfTheSceneAndTurnWithTheHead) {
   Scene scene = test::sampleScene();
   scene.strands.count = 50;

@@ -99,6 +99,82 @@ TEST(Simulation, RootVerticesThatMoveRigidlyDoAsTheHeadDoes) {
   for (std::size_t v = 0; v < left.size(); ++v) EXPECT_LE((left[v] - right[v]).norm(), 1e-5);
 }
 
+// In wind w a limp column with drag c comes to rest straight, along (c w, −g): drag and weight are both
+// proportional to mass. Steady wind, gusts of no strength and a fluid that nothing stands in blow alike.
+TEST(Simulation, LimpColumnsHangAlongTheSumOfWindAndWeight) {
+  const HairMesh mesh = patch(Vec3(0, -1, 0));
+  DynamicsSettings settings;
+  settings.droop = 0;
+  settings.drag = 6;
+  settings.sleepSpeed = 0;
+  settings.windVelocity = Vec3(0.8, 0, -0.3);
+  settings.gustSpeed = 0;
+  settings.shelter = 0;
+  settings.airCells = 8;
+  const Vec3 along = Vec3(6 * 0.8, -9.81, -6 * 0.3).normalized();
+  for (const WindKind kind : {WindKind::Constant, WindKind::Gusts, WindKind::Fluid}) {
+    settings.wind = kind;
+    auto simulation = Simulation::create(mesh, settings, centimetres());
+    ASSERT_TRUE(simulation.ok()) << simulation.error().text();
+    const auto positions = run(**simulation, 24 * 8);
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const HairVertex& vertex = mesh.vertices()[v];
+      if (vertex.layer == 0) continue;
+      // e^(−drag t / 2) of the swing is left after 8 s: 4e-11; uniform fluids stay so to 1e-13.
+      EXPECT_LE((positions[v] - positions[vertex.parent] - along).norm(), 1e-6) << int(kind) << " " << v;
+    }
+  }
+}
+
+// A scalp that stretches and shears: roots where they are asked to be on every frame, links as long as ever.
+TEST(Simulation, ADeformingScalpTakesItsRootsAlong) {
+  const HairMesh mesh = patch(Vec3(0.3, -1, 0.2));
+  SimulationWorld world = centimetres();
+  for (int f = 0; f <= 12; ++f) {
+    std::vector<Vec3> roots;
+    for (const HairVertex& vertex : mesh.vertices()) {
+      const Vec3& p = vertex.position;
+      if (vertex.layer == 0)
+        roots.emplace_back(p.x() * (1 + 0.02 * f) + 0.01 * f * p.z(), 0.02 * f * p.x() * p.z(), p.z());
+    }
+    world.motion.roots.push_back(roots);
+  }
+  auto simulation = Simulation::create(mesh, {}, world);
+  ASSERT_TRUE(simulation.ok());
+  for (int f = 1; f <= 12; ++f) {
+    ASSERT_TRUE((*simulation)->advance().ok());
+    for (std::size_t v = 0, root = 0; v < mesh.vertices().size(); ++v) {
+      if (mesh.vertices()[v].layer == 0) {
+        EXPECT_EQ((*simulation)->positions()[v], world.motion.roots[f][root++]);
+      }
+    }
+  }
+  EXPECT_LE((*simulation)->report().maxStretch, 1e-9);
+  EXPECT_EQ((*simulation)->report().resets, 0u);
+}
+
+// Where the mesh splits, columns are trees, and hang as such.
+TEST(Simulation, SplitColumnsAreTreesAndKeepTheirLengths) {
+  HairMesh mesh = patch(Vec3(1, 0, 0), 3);
+  for (const HairVertex& vertex : mesh.vertices())
+    if (vertex.layer == 2 && separateVertex(mesh, vertex.id).ok()) break;
+  DynamicsSettings settings;
+  settings.droop = 0;
+  settings.drag = 6;
+  settings.sleepSpeed = 0;
+  auto simulation = Simulation::create(mesh, settings, centimetres());
+  ASSERT_TRUE(simulation.ok());
+  EXPECT_GT((*simulation)->report().links,
+            3 * (*simulation)->report().chains);  // more than plain columns have
+  const auto positions = run(**simulation, 24 * 8);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const HairVertex& vertex = mesh.vertices()[v];
+    if (vertex.layer > 0) {
+      EXPECT_NEAR(positions[v][1], -double(vertex.layer), 1e-6);
+    }  // as above
+  }
+}
+
 DynamicsSettings everything() {
   DynamicsSettings settings;
   settings.wind = WindKind::Fluid;

@@ -51,6 +51,29 @@ TEST(Torture, TheDirectSolverStandsTheWholeGrid) {
   EXPECT_LE(double(sum.notConverged) / sum.chainSteps, 0.03);
 }
 
+// The spec's zero links never reach a solver: they are welded at build, and what is left is the chain without
+// them, so that the grid above is theirs too.
+TEST(Torture, ZeroLinksAreWeldedAway) {
+  for (const std::size_t links : {1u, 2u, 30u}) {
+    std::vector<Vec3> plain, doubled;
+    for (std::size_t k = 0; k <= links; ++k) {
+      plain.emplace_back(double(k) / double(links), 0.1 * double(k), 0);
+      for (int twice = 0; twice < 2; ++twice) doubled.push_back(plain.back());
+    }
+    const std::vector<std::uint64_t> some{0, plain.size()}, all{0, doubled.size()};
+    const ChainBuild build = chainsFromCurves(doubled, all).value();
+    const ChainSet a = chainsFromCurves(plain, some).value().chains, &b = build.chains;
+    EXPECT_EQ(build.report.weldedNodes, links + 1);
+    EXPECT_EQ(a.parents, b.parents);
+    EXPECT_EQ(a.lengths, b.lengths);
+    EXPECT_EQ(a.masses, b.masses);
+    EXPECT_EQ(a.restPositions, b.restPositions);
+    ChainSet zero = a;  // made by hand it is refused, with the node's name
+    zero.lengths[links] = 0;
+    EXPECT_EQ(makeSolver(zero).error().place, "node " + std::to_string(links));
+  }
+}
+
 // Cut off after any number of Newton steps a chain gains nothing: φ(end) <= φ(start) and the chain is slowed
 // down by what it would gain (docs/simulate.md).
 TEST(Torture, EnergyNeverRisesHoweverFewNewtonStepsThereAre) {
@@ -324,6 +347,34 @@ TEST(Lateral, SpringsHoldNeighboursTogetherAndGainNoEnergy) {
   const double loose = meanTipDistance(0), soft = meanTipDistance(50), firm = meanTipDistance(5000);
   EXPECT_LT(soft, 0.9 * loose);
   EXPECT_LT(firm, 0.2 * loose);
+}
+
+// Two pendulums with a spring between their links, let go to opposite sides: ω² = g/ℓ + 2k/m (½k|d_b − d_a|²
+// is 2kℓ²θ² for θ and −θ).
+TEST(Lateral, OppositeSwingsHaveTheFrequencyOfCoupledPendulums) {
+  ChainSet c = repeated(straightChain(1, 0.5, Vec3(0, -1, 0), 0.5), 2);
+  c.masses[1] = c.masses[3] = 2;
+  c.laterals.push_back({1, 3, 40, Vec3::Zero()});
+  ChainState state = restState(c);
+  constexpr double kSwing = 1e-3, kStep = 1e-3;
+  state.positions[1] = 0.5 * Vec3(std::sin(kSwing), -std::cos(kSwing), 0);
+  state.positions[3] = 0.5 * Vec3(-std::sin(kSwing), -std::cos(kSwing), 0);
+  SolverOptions options;
+  options.method = DynamicsMethod::EnergyKeeping;
+  options.lateralPasses = 3;
+  options.tolerance = 1e-12;
+  const auto solver = makeSolver(c, options).value();
+  double time = 0, before = state.positions[1].x();
+  while (before > 0 && time < 1) {
+    ASSERT_TRUE(solver->step(state, {}, kStep).ok());
+    const double now = state.positions[1].x();
+    EXPECT_NEAR(now, -state.positions[3].x(), 1e-4 * kSwing);  // who is solved first lags by k h²/m = 2e-5
+    time += now > 0 ? kStep : kStep * before / (before - now);
+    before = now;
+  }
+  // A quarter of a period; the step's own error is (ωh)²/24 = 3e-6, the amplitude's θ²/16 = 6e-8.
+  const double quarter = std::acos(-1.) / 2 / std::sqrt(9.81 / 0.5 + 2 * 40 / 2.);
+  EXPECT_NEAR(time, quarter, 1e-4 * quarter);
 }
 
 TEST(SkippedBending, ChangesNothingButTime) {

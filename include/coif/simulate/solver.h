@@ -80,6 +80,7 @@ enum class ChainFaultKind {
 struct ChainFault {
   std::uint32_t tree = 0;
   ChainFaultKind kind = ChainFaultKind::NotFinite;
+  double left = 0;  ///< NotConverged: how far the last Newton step moved a node, in mean links
 };
 
 struct StepReport {
