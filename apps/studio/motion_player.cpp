@@ -112,7 +112,9 @@ Status MotionPlayer::prepare(const MotionInput& input, bool fresh) {
   SimulationWorld world{input.surface.get(), input.metersPerUnit,
                         input.upAxis,        {std::move(poses), {}},
                         kFramesPerSecond,    playing_.surface == input.surface ? band_ : nullptr};
-  COIF_ASSIGN(auto made, Simulation::create(input.mesh, input.dynamics, world, context));
+  DynamicsSettings dynamics = input.dynamics;
+  dynamics.wisps = 0;  // it is the mesh that is shown
+  COIF_ASSIGN(auto made, Simulation::create(input.mesh, dynamics, world, context));
   // Air that one of the two does not have cannot be carried over: then the hair starts at rest.
   if (goesOn) (void)made->restore(simulation_->state());
   simulation_ = std::move(made);
