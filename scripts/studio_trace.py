@@ -2,7 +2,8 @@
 """What a mouse move costs in the editor: the bob with 100 000 strands, a vertex dragged, a long brush stroke; and how
 soon the example's first picture stands. Prints milliseconds beyond drawing, from the editor's own trace.
 
-Usage: PYTHONPATH=build/release/python:tests/python COIF_BIN_DIR=build/release/bin build/venv/bin/python scripts/studio_trace.py
+Usage: PYTHONPATH=build/release/python:tests/python COIF_BIN_DIR=build/release/bin \\
+       build/venv/bin/python scripts/studio_trace.py
 Needs Xvfb and xdotool. Nothing else should run meanwhile.
 """
 import json

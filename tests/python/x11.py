@@ -17,9 +17,11 @@ X.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
 X.XDefaultRootWindow.argtypes = X.XPending.argtypes = [ctypes.c_void_p]
 X.XCloseDisplay.argtypes = [ctypes.c_void_p]
 X.XSync.argtypes = [ctypes.c_void_p, ctypes.c_int]
-X.XCreateSimpleWindow.argtypes = [ctypes.c_void_p, Window] + [ctypes.c_int] * 2 + [ctypes.c_uint] * 3 + [ctypes.c_ulong] * 2
+X.XCreateSimpleWindow.argtypes = [
+    ctypes.c_void_p, Window, *[ctypes.c_int] * 2, *[ctypes.c_uint] * 3, *[ctypes.c_ulong] * 2]
 X.XSetSelectionOwner.argtypes = [ctypes.c_void_p, Atom, Window, ctypes.c_ulong]
-X.XChangeProperty.argtypes = [ctypes.c_void_p, Window, Atom, Atom, ctypes.c_int, ctypes.c_int, ctypes.c_void_p, ctypes.c_int]
+X.XChangeProperty.argtypes = [
+    ctypes.c_void_p, Window, Atom, Atom, ctypes.c_int, ctypes.c_int, ctypes.c_void_p, ctypes.c_int]
 X.XDeleteProperty.argtypes = [ctypes.c_void_p, Window, Atom]
 X.XSendEvent.argtypes = [ctypes.c_void_p, Window, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
 X.XNextEvent.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
@@ -28,7 +30,8 @@ _HEAD = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("send_event", ctyp
 
 
 class ClientMessage(ctypes.Structure):
-    _fields_ = [*_HEAD, ("window", Window), ("message_type", Atom), ("format", ctypes.c_int), ("data", ctypes.c_long * 5)]
+    _fields_ = [*_HEAD, ("window", Window), ("message_type", Atom), ("format", ctypes.c_int),
+                ("data", ctypes.c_long * 5)]
 
 
 class SelectionRequest(ctypes.Structure):
