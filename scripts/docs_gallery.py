@@ -28,9 +28,10 @@ class Studio:
     def run(self, *arguments):
         subprocess.run([self.coif, "-q", *map(str, arguments)], check=True)
 
-    def picture(self, *options):
+    def picture(self, *options, scene="bob"):
         path = self.folder / "picture.png"
-        self.run("render", self.folder / "bob.coif", "-o", path, "--size", f"{SIZE}x{SIZE}", "--strands", STRANDS, *options)
+        self.run("render", self.folder / f"{scene}.coif", "-o", path, "--strands", STRANDS,
+                 *(() if "--size" in options else ("--size", f"{SIZE}x{SIZE}")), *options)
         return Image.open(path).convert("RGB").copy()
 
 

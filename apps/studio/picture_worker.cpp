@@ -128,7 +128,9 @@ Status PictureWorker::updateHair(const PictureRequest& request, const Context& c
   const std::uint64_t topology = topologyHash(*request.scene);
   if (!request.scene->styles.empty()) {
     const Trace::Span span(trace_, "style strands");
-    COIF_ASSIGN(const StrandSet* styled, evaluation_.strands(*request.scene, context));
+    Scene shown = *request.scene;
+    shown.placedHash = meshHash(shown.hairMesh);  // as it is shown without a style: where it stands
+    COIF_ASSIGN(const StrandSet* styled, evaluation_.strands(shown, context));
     COIF_TRY(session_->setStrands(*styled, context));
     hairShown_ = true;
     shownTopology_ = 0;

@@ -111,10 +111,10 @@ std::vector<KindEntry> lockKinds() {
   StyleKind clump{"clump",
                   "Clump",
                   "Gathers hair into locks; several make locks of locks.",
-                  {integer("count", "Locks", 500, 1, 5000, 1e6, "On the whole head, or in the group."),
+                  {integer("count", "Locks", 350, 1, 5000, 1e6, "On the whole head, or in the group."),
                    share("variation", "Varies", 0.3, "How much looser some locks and hairs are."),
                    number("twist", "Twist", "turns", 0, -5, 5, 1000, "Of a lock, from root to tip.")}};
-  clump.amount = 0.8;
+  clump.amount = 0.75;
   clump.ramp = {{{0, 0}, {0.35, 0.4}, {1, 1}}, RampShape::Smooth};
   StyleKind braid{"braid",
                   "Braid",

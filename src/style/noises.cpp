@@ -75,7 +75,7 @@ std::vector<KindEntry> noiseKinds() {
   StyleKind noise{"noise",
                   "Noise",
                   "Bends hair at random, neighbours alike.",
-                  {height(0.8, "At most so far to a side."), wavelength(6),
+                  {height(1.5, "At most so far to a side."), wavelength(6),
                    number("coherence", "Agrees over", "cm", 2.5, 0, 20, 1000,
                           "Over how far neighbours bend alike; 0: each for itself."),
                    octaves(2)}};
@@ -84,14 +84,14 @@ std::vector<KindEntry> noiseKinds() {
   StyleKind frizz{"frizz",
                   "Frizz",
                   "Bends every hair in its own way.",
-                  {height(0.15, "At most so far to a side."), wavelength(1.6), octaves(1)}};
+                  {height(0.3, "At most so far to a side."), wavelength(2), octaves(1)}};
   frizz.ramp = {{{0, 0}, {0.25, 0.5}, {1, 1}}, RampShape::Smooth};
   frizz.pointsPerWave = 4;
   StyleKind flyaways{"flyaways",
                      "Flyaways",
                      "Lets a few hairs stand off the rest.",
-                     {number("share", "Share", "", 0.03, 0, 0.3, 1, "Of all hairs."),
-                      number("distance", "Distance", "cm", 2, 0, 10, 1000, "Of their tips, at most.")}};
+                     {number("share", "Share", "", 0.04, 0, 0.3, 1, "Of all hairs."),
+                      number("distance", "Distance", "cm", 3.5, 0, 10, 1000, "Of their tips, at most.")}};
   flyaways.ramp = {{{0, 0}, {0.2, 0.06}, {1, 1}}, RampShape::Smooth};
   return {{std::move(noise),
            [](const EffectSetup& s) { return std::make_unique<Noise>(s, s.number("coherence")); }},

@@ -223,3 +223,27 @@ def test_wisps_are_simulated_explained_and_shown(scenes, tmp_path):
     assert "points.timeSamples" in (tmp_path / "w.usda").read_text()
     refused = run("simulate", scene, "--set", "drop=1", "-o", tmp_path / "n.coifcache", status=1).stderr
     assert "no dynamics setting named 'drop'" in refused and "droop" in refused
+
+
+def test_style_curls_a_scene(scenes, tmp_path):
+    kinds = run_json("style", "--list-kinds")["kinds"]
+    assert {"curl", "clump", "push_out"} <= {k["kind"] for k in kinds} and all(p["help"] for k in kinds for p in k["parameters"])
+    styled = run_json("style", scenes / "bob.coif", "--add", "clump", "--add", "curl", "--set", "curl.radius=0.25",
+                      "--set", "Curl.hand=left", "--set", "clump.amount=0.5", "-o", tmp_path / "curly.coif")
+    assert [op["name"] for op in styled["operators"]] == ["Clump", "Curl"]
+    assert styled["operators"][1]["parameters"]["radius"] == 0.25 and styled["operators"][0]["amount"] == 0.5
+    stages = run_json("build", tmp_path / "curly.coif", "-o", tmp_path / "a.hair", "--strands", 300)["stages"]
+    style = next(s for s in stages if s["stage"] == "style")
+    assert style["state"] == "ran" and "Curl: ran" in style["notes"]
+    off = run_json("style", tmp_path / "curly.coif", "--remove", "clump", "--set", "curl.enabled=off", "-o", tmp_path / "off.coif")
+    assert [op["enabled"] for op in off["operators"]] == [False]
+    run("build", tmp_path / "off.coif", "-o", tmp_path / "off.hair", "--strands", 300, "--points", 9)
+    run("build", scenes / "bob.coif", "-o", tmp_path / "plain.hair", "--strands", 300, "--points", 9)
+    assert (tmp_path / "off.hair").read_bytes() == (tmp_path / "plain.hair").read_bytes() != (tmp_path / "a.hair").read_bytes()
+
+
+@pytest.mark.parametrize("arguments", [["--set", "radius=1", "-o", "x.coif"], ["--set", "curl.radius=1", "-o", "x.coif"],
+                                       ["--add", "curl", "--set", "curl.bounce=1", "-o", "x.coif"], ["--add", "curl"]])
+def test_style_refuses_what_is_not_there(scenes, tmp_path, arguments):
+    done = run("style", scenes / "bob.coif", *arguments, status=2, cwd=tmp_path)
+    assert len(done.stderr.strip().splitlines()) == 1 and list(tmp_path.iterdir()) == []

@@ -175,9 +175,9 @@ TEST(StylePlan, ASmallEditChangesTheStyleALittle) {
     const StrandSet before = styled(mesh, strandsOn(mesh, 800), stack);
     for (const double step : {1e-3, 1e-5}) {
       const HairMesh after = edited(mesh, step);
-      // This hair stands nearly along the mean normal, where frames turn fastest: offsets of 0.8 there turn
-      // by up to 150 times the edit over steps of 1. The bound is proportional: nothing jumps.
-      EXPECT_LT(greatestDifference(before, styled(after, strandsOn(after, 800), stack)), 200 * step + 2e-5)
+      // This hair stands nearly along the mean normal, where frames turn fastest: offsets of 1.5 there turn
+      // by up to 160 times the edit over steps of 1. The bound is proportional: nothing jumps.
+      EXPECT_LT(greatestDifference(before, styled(after, strandsOn(after, 800), stack)), 400 * step + 2e-5)
           << stack[0].kind << " of " << stack.size();
     }
   }
