@@ -9,10 +9,11 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// The strand's centre, having told the strand of it; null without one.
-const Locks::Centre* join(StyledStrand& strand, const Locks& locks) {
+/// The strand's centre, having told the strand of it if it gathers there at all; null without one.
+const Locks::Centre* join(StyledStrand& strand, const Locks& locks, const Strength& strength) {
   const std::uint32_t c = locks.centreOf[strand.index];
   if (c == kNone) return nullptr;
+  if (strength.whole * strength.ramp.greatest() == 0) return &locks.centres[c];
   strand.lock = locks.centres[c].place, strand.inLock = true;
   return &locks.centres[c];
 }
@@ -38,7 +39,7 @@ class Clump final : public Effect {
   std::uint32_t lockCount() const override { return count_; }
 
   void run(StyledStrand& strand, const Strength& strength, const Locks* locks) const override {
-    const Locks::Centre* centre = join(strand, *locks);
+    const Locks::Centre* centre = join(strand, *locks, strength);
     if (centre == nullptr || centre->place.id == strand.place.id) return;
     const double lock = 1 - variation_ * random_.child(1).uniform(centre->place.id);
     const double own = 1 - 0.5 * variation_ * random_.child(2).uniform(strand.place.id);
@@ -82,7 +83,7 @@ class Braid final : public Effect {
   std::uint32_t lockCount() const override { return count_; }
 
   void run(StyledStrand& strand, const Strength& strength, const Locks* locks) const override {
-    const Locks::Centre* centre = join(strand, *locks);
+    const Locks::Centre* centre = join(strand, *locks, strength);
     if (centre == nullptr || strand.size() < 2) return;
     const double part = partOf(strand.place, centre->place);
     const CounterRandom own = random_.child(strand.place.id);

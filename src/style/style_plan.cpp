@@ -63,12 +63,11 @@ std::string leftOutReason(const StyleOperator& op, const HairMesh& mesh, const S
 /// The stack at work: what is kept of each strand between operators that look at other strands.
 class Styling {
  public:
-  Styling(const HairMesh& mesh, const StrandSet& strands, Embedding embedding, double cm, bool runIdle)
+  Styling(const HairMesh& mesh, const StrandSet& strands, Embedding embedding, bool runIdle)
       : mesh_(mesh),
         strands_(strands),
         embedding_(std::move(embedding)),
         faces_(rootFaceFrames(mesh)),
-        cm_(cm),
         runIdle_(runIdle),
         lockOf_(strands.strandCount(), kNone) {
     offsets.resize(strands.pointCount(), Vec3f::Zero());
@@ -110,17 +109,6 @@ class Styling {
         centre.arcs.assign(strand.arcs().begin(), strand.arcs().end());
       }
     });
-    for (std::size_t s = 0; s < lockOf_.size(); ++s) {
-      const std::uint32_t c = active.locks.centreOf[s];
-      if (c != kNone) nextLockOf_.resize(lockOf_.size(), kNone), nextLockOf_[s] = centreStrands_[c];
-    }
-  }
-  /// After the operator that asked for them: later ones know the locks.
-  void keepLocks() {
-    for (std::size_t s = 0; s < nextLockOf_.size(); ++s) {
-      if (nextLockOf_[s] != kNone) lockOf_[s] = nextLockOf_[s];
-    }
-    nextLockOf_.clear();
   }
 
  private:
@@ -128,7 +116,7 @@ class Styling {
     const std::size_t begin = strands_.offsets[s], size = strands_.offsets[s + 1] - begin;
     const auto points = strands_.strand(s);
     curve.load(points, rootFrame(faces_[embedding_.bundles[s]], points, embedding_.rootTurns[s]));
-    strand.index = s, strand.cm = cm_;
+    strand.index = s;
     strand.place = embedding_.places[s];
     strand.inLock = lockOf_[s] != kNone;
     strand.lock = strand.inLock ? embedding_.places[lockOf_[s]] : strand.place;
@@ -141,6 +129,7 @@ class Styling {
     const std::size_t begin = strands_.offsets[s];
     if (strands_.offsets[s + 1] == begin) return;
     load(s, curve, strand);
+    const std::uint64_t lockBefore = strand.inLock ? strand.lock.id : ~std::uint64_t{0};
     const std::uint32_t bundle = embedding_.bundles[s];
     for (const Active& active : batch) {
       if (active.group != kNone && mesh_.bundles()[bundle].group != active.group) continue;
@@ -149,6 +138,8 @@ class Styling {
       if (strength.whole == 0 && !runIdle_) continue;
       active.effect->run(strand, strength, &active.locks);
     }
+    if (strand.inLock && strand.lock.id != lockBefore)
+      lockOf_[s] = centreStrands_[batch.front().locks.centreOf[s]];
     reach[s] = float(strand.reach());
     for (std::size_t p = 0; p < strand.size(); ++p) offsets[begin + p] = strand.offsets()[p].cast<float>();
     if (widths.empty()) return;
@@ -159,9 +150,8 @@ class Styling {
   const StrandSet& strands_;
   Embedding embedding_;
   std::vector<Frame> faces_;
-  double cm_;
   bool runIdle_;
-  std::vector<std::uint32_t> lockOf_, nextLockOf_, centreStrands_;  // strand indices
+  std::vector<std::uint32_t> lockOf_, centreStrands_;  // strand indices
 };
 
 Result<std::vector<Active>> activate(const HairMesh& mesh, const StrandSet& strands,
@@ -204,14 +194,13 @@ Result<StylePlan> StylePlan::create(const HairMesh& mesh, const StrandSet& stran
   COIF_ASSIGN(std::vector<Active> active, activate(mesh, strands, stack, options, cm, plan.report_));
   if (active.empty() || strands.pointCount() == 0) return plan;
   COIF_ASSIGN(Embedding embedding, embed(mesh, strands, cm, context));
-  Styling styling(mesh, strands, std::move(embedding), cm, options.runIdle);
+  Styling styling(mesh, strands, std::move(embedding), options.runIdle);
   for (std::size_t done = 0; done < active.size();) {
     context.report("styling", double(done) / double(active.size()));
     if (active[done].effect->lockCount() > 0) styling.findLocks(active[done], context);
     std::size_t end = done + 1;  // up to the next one that looks at other strands
     while (end < active.size() && active[end].effect->lockCount() == 0) ++end;
     styling.run(std::span(active).subspan(done, end - done), context);
-    styling.keepLocks();
     active[done].locks = {};
     done = end;
     if (context.cancelled()) return cancelled();

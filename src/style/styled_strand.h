@@ -21,7 +21,7 @@ struct Strength {
 /// Where a strand grows, in the embedding.
 struct StrandPlace {
   std::uint64_t id = 0;
-  Vec3 root = Vec3::Zero();  ///< on the root layer, centimetres, in the mesh's own axes (the third is up)
+  Vec3 root = Vec3::Zero();     ///< on the root layer, centimetres, in the mesh's own axes (the third is up)
   Vec3 normal = Vec3::UnitZ();  ///< of the root face, in those axes
 };
 
@@ -44,7 +44,6 @@ class StyledStrand {
   StrandPlace place;
   StrandPlace lock;  ///< the centre's, once an operator gathered it; before: its own
   bool inLock = false;
-  double cm = 1;  ///< scene units in a centimetre
 
   /// Starts from what is stored: offsets (n) and widths (n or none) of the curve's points.
   void load(const StrandCurve& curve, double reach, std::span<const Vec3f> offsets,

@@ -186,7 +186,7 @@ TEST(StyleCommands, MakeAStackThatPlaysBack) {
   run("set_operator", {{"operator", name("Curl")}, {"parameter", name("hand")}, {"text", name("left")}});
   run("set_operator", {{"operator", name("Curl")}, {"parameter", name("group")}, {"text", name("fringe")}});
   run("set_operator", {{"operator", name("Curl 2")}, {"parameter", name("enabled")}, {"value", 0.0}});
-  run("set_operator", {{"operator", name("Locks")}, {"parameter", name("amount")}, {"value", 0.75}});
+  run("set_operator", {{"operator", name("Locks")}, {"parameter", name("amount")}, {"value", 0.5}});
   run("set_ramp",
       {{"operator", name("Locks")}, {"points", Numbers{0, 0, 1, 0.5}}, {"shape", name("linear")}});
   run("rename_operator", {{"operator", name("Curl 2")}, {"name", name("Coils")}});
@@ -199,7 +199,7 @@ TEST(StyleCommands, MakeAStackThatPlaysBack) {
   EXPECT_FALSE(stack[0].enabled);
   EXPECT_NE(stack[0].seed, stack[2].seed) << "the second of a kind is another throw";
   EXPECT_EQ(stack[1].name, "Locks");
-  EXPECT_EQ(stack[1].amount, 0.75);
+  EXPECT_EQ(stack[1].amount, 0.5);
   EXPECT_EQ(stack[1].ramp, (Ramp{{{0, 0}, {1, 0.5}}, RampShape::Linear}));
   EXPECT_EQ(maskOf(stack[1].mask, editor.mesh())[0], 0.5);
   EXPECT_EQ(parameterOf(stack[2], "radius"), 0.25);

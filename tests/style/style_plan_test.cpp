@@ -52,6 +52,19 @@ TEST(StylePlan, RunningIdleOperatorsChangesNoByte) {
   }
 }
 
+TEST(StylePlan, AnIdleClumpMakesNoLocksForWhatFollows) {
+  const HairMesh mesh = lawn(3, 10);
+  const StrandSet straight = strandsOn(mesh, 300);
+  StyleStack stack{op("clump"), op("smooth"), op("curl")};
+  stack[0].amount = 0;
+  StyleOptions options;
+  options.runIdle = true;
+  const StrandSet forced = styled(mesh, straight, stack, options), lazy = styled(mesh, straight, stack);
+  EXPECT_LT(greatestDifference(forced, lazy), 1e-5) << "a float's rounding between the passes";
+  stack[0].amount = 1e-9;
+  EXPECT_GT(greatestDifference(styled(mesh, straight, stack), lazy), 0.1) << "the least clump makes locks";
+}
+
 TEST(StylePlan, SameBytesForAnyNumberOfThreads) {
   const HairMesh mesh = grid(6, 5, 4, 0.2);
   const StrandSet straight = strandsOn(mesh, 3000);

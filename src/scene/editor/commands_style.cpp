@@ -83,8 +83,10 @@ Result<bool> setCommon(const Work& work, StyleOperator& op, const Arguments& arg
     if (!(value >= 0 && value <= 1)) return refuse("amount wants a number from 0 to 1");
     op.amount = value;
   } else if (what == "enabled") {
-    if (value != 0 && value != 1) return refuse("enabled wants 0 or 1");
-    op.enabled = value == 1;
+    const std::string& word = arguments.text("text");
+    const bool known = word.empty() ? value == 0 || value == 1 : word == "on" || word == "off";
+    if (!known) return refuse("enabled wants on or off");
+    op.enabled = word.empty() ? value == 1 : word == "on";
   } else if (what == "seed") {
     if (!(value >= 0 && value <= 9e15) || value != std::floor(value))
       return refuse("seed wants a whole number from 0 to 9e15");
