@@ -30,8 +30,8 @@ class Studio:
 
     def picture(self, *options, scene="bob"):
         path = self.folder / "picture.png"
-        self.run("render", self.folder / f"{scene}.coif", "-o", path, "--strands", STRANDS,
-                 *(() if "--size" in options else ("--size", f"{SIZE}x{SIZE}")), *options)
+        self.run("render", self.folder / f"{scene}.coif", "-o", path, "--size", f"{SIZE}x{SIZE}",
+                 "--strands", STRANDS, *options)
         return Image.open(path).convert("RGB").copy()
 
 

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the pictures of docs/style.md (each kind of operator by itself, and a stack growing) and of the manual's page
-on curls.
+"""Makes the pictures of docs/style.md: each kind of operator by itself, and a stack growing.
 
 Usage: build/venv/bin/python scripts/docs_style.py [--bin build/release/bin] [-o docs/pictures]
 """
@@ -15,17 +14,16 @@ STACK = [[], ["clump"], ["clump", "curl"], ["clump", "curl", "frizz", "flyaways"
 LIGHT = ["--lod", "off", "--no-ground"]
 
 
-def styled(studio, style, kinds, *options):
+def styled(studio, style, kinds):
     studio.run("style", studio.folder / f"{style}.coif", *[a for kind in kinds for a in ("--add", kind)],
                "-o", studio.folder / "styled.coif")
-    return studio.picture(*LIGHT, *options, scene="styled")
+    return studio.picture(*LIGHT, scene="styled")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--bin", type=pathlib.Path, default="build/release/bin")
     parser.add_argument("-o", "--output", type=pathlib.Path, default="docs/pictures")
-    parser.add_argument("--manual", type=pathlib.Path, default="docs/manual/pictures")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         studio = Studio(arguments.bin.resolve() / "coif", pathlib.Path(folder))
@@ -34,8 +32,6 @@ def main():
               arguments.output / "style-kinds.jpg")
         sheet([[(" + ".join(kinds) or "no operator", styled(studio, "bob", kinds)) for kinds in STACK]],
               arguments.output / "style-stack.jpg")
-        for name, kinds in {"curls-2-waves": ["wave"], "curls-3-locks": ["clump", "curl"]}.items():
-            styled(studio, "long", kinds, "--size", "420x420").save(arguments.manual / f"{name}.jpg", quality=88)
 
 
 if __name__ == "__main__":
