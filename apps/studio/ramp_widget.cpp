@@ -44,7 +44,9 @@ int addPoint(Ramp& ramp, const RampPoint& point) {
   const auto after = std::ranges::upper_bound(ramp.points, point.x, {}, &RampPoint::x);
   if (after != ramp.points.end() && after->x - point.x < kLeastStep) return kNone;
   if (after != ramp.points.begin() && point.x - (after - 1)->x < kLeastStep) return kNone;
-  return int(ramp.points.insert(after, point) - ramp.points.begin());
+  const auto number = after - ramp.points.begin();  // before the points move
+  ramp.points.insert(after, point);
+  return int(number);
 }
 
 void movePoint(Ramp& ramp, int number, RampPoint to) {
