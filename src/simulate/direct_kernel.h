@@ -162,14 +162,14 @@ class Direct : NewtonSystem<T, L, kBend, kCurved> {
     }
     value_ = positions(true, all(1));
     const M better = value_ < staying;
-    const bool all = !any(~better);
-    for (int i = 1; i < b_.nodes && !all; ++i) {
+    const bool everywhere = !any(~better);
+    for (int i = 1; i < b_.nodes && !everywhere; ++i) {
       Work& n = b_.work[i];
       store(n.u[1 - now_], pick(better, load(n.u[1 - now_]), load(n.u[now_])));
       store(n.turned[1 - now_], pick(better, load(n.turned[1 - now_]), load(n.turned[now_])));
     }
     now_ = 1 - now_;
-    if (!all) value_ = positions(false, Base::all(0));
+    if (!everywhere) value_ = positions(false, all(0));
     keepForces();
   }
 
@@ -390,8 +390,8 @@ class Direct : NewtonSystem<T, L, kBend, kCurved> {
       for (int l = 0; l < L; ++l) {
         double d[3], dd = 0;
         for (int k = 0; k < 3; ++k) d[k] = n.start[k][l] - p.start[k][l], dd += d[k] * d[k];
-        const double unit = 1 / std::sqrt(dd);
-        for (int k = 0; k < 3; ++k) u[k][l] = d[k] * unit + double(t[k][l]);
+        const double perLength = 1 / std::sqrt(dd);
+        for (int k = 0; k < 3; ++k) u[k][l] = d[k] * perLength + double(t[k][l]);
       }
     }
     for (int l = 0; l < L; ++l) {
