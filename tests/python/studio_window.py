@@ -237,8 +237,14 @@ class Studio:
     def saved(self, name="bob.coif"):
         import coif
 
+        def written():  # whole, as a file of its own: the title may still be of the frame before
+            path = self.folder / name
+            return path.exists() and (path.stat().st_ino, path.stat().st_mtime_ns)
+
+        before = written()
         self.key("ctrl+s")
-        self.wait(lambda: not self.title().startswith("*"), "the document to be saved")
+        self.wait(lambda: written() and written() != before, "the document to be saved")
+        self.wait(lambda: not self.title().startswith("*"), "its title to say so")
         return coif.Scene.load(self.folder / name).hair_mesh
 
     def find_window(self):
