@@ -20,6 +20,8 @@ class Keys {
   void clear() { downs_.clear(); }
   /// Whether one of the combinations (spaces between) went down, with just these modifiers.
   bool pressed(const std::string& keys) const;
+  /// Each that went down as if alone, in order.
+  std::vector<Keys> oneByOne() const;
 
  private:
   bool pressedOne(const std::string& key) const;
