@@ -148,6 +148,7 @@ void Studio::openExample() {
 
 void Studio::adopt(std::unique_ptr<Document> document) {
   document_ = std::move(document);
+  ++documentNumber_;
   tool_.reset(), forgetAttempt();
   player_.reset();
   played_.reset(), playedMesh_.reset();
@@ -221,6 +222,11 @@ bool Studio::mayClose() {
   return quit_;
 }
 
+std::uint64_t Studio::shownRevision() const {
+  const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
+  return hashCombine(hashCombine(documentNumber_, document_->editor.revision()), state);
+}
+
 PictureRequest Studio::pictureRequest(bool fine) const {
   const Editor& editor = document_->editor;
   const ViewSettings& s = view_.settings;
@@ -229,9 +235,7 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   auto scene = std::make_shared<Scene>(editor.scene());
   if (attempt_ || playedMesh_) scene->hairMesh = shownMesh();
   scene->styles = shownStyles();
-  const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
-  request.revision = state != 0 ? hashCombine(editor.revision(), state) : editor.revision();
-  if (pendingStyles_) request.revision = hashCombine(request.revision, pendingStylesNumber_);
+  request.revision = pendingStyles_ ? hashCombine(shownRevision(), pendingStylesNumber_) : shownRevision();
   request.scene = std::move(scene);
   request.camera = played_ ? cameraFromHead(view_.camera, played_->pose) : view_.camera;
   request.draft = !fine;
@@ -255,9 +259,8 @@ PictureRequest Studio::pictureRequest(bool fine) const {
 
 void Studio::askForPicture(bool moving) {
   if (!document_ || turntable_ || view_.width() < 8 || view_.height() < 8) return;
-  const Editor& editor = document_->editor;
   std::uint64_t key =
-      hashCombine(editor.revision(), std::uint64_t(view_.width()) * 65536 + std::uint64_t(view_.height()));
+      hashCombine(shownRevision(), std::uint64_t(view_.width()) * 65536 + std::uint64_t(view_.height()));
   const ViewSettings& s = view_.settings;
   const bool head = s.showHead && headInPicture();
   key = hashCombine(key, (strandsInPicture() ? 1u : 0u) + (head ? 2u : 0u) + (s.shadows ? 4u : 0u) +
@@ -265,9 +268,7 @@ void Studio::askForPicture(bool moving) {
   for (const Vec3& v : {view_.camera.eye, view_.camera.target, Vec3(view_.camera.fovDeg, 0, 0)}) {
     for (double x : v) key = hashCombine(key, std::bit_cast<std::uint64_t>(x));
   }
-  if (attempt_) key = hashCombine(key, attemptNumber_);
   if (pendingStyles_) key = hashCombine(key, pendingStylesNumber_);
-  if (played_) key = hashCombine(key, hashCombine(played_->frame, 1));
   const LookSettings look = shownLook();
   for (double x : {double(look.hairColor.x()), double(look.hairColor.y()), double(look.hairColor.z()),
                    look.longitudinalRoughness, look.azimuthalRoughness, look.light.azimuthDeg,
@@ -329,9 +330,8 @@ bool Studio::frame() {
   if (document_) {
     const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");
-      const std::uint64_t state = attempt_ ? attemptNumber_ : played_ ? hashCombine(played_->frame, 1) : 0;
-      view_.update(shownMesh(), hashCombine(document_->editor.revision(), state), document_->editor.state(),
-                   document_->head.get(), tool_ != nullptr || brush_.stroking());
+      view_.update(shownMesh(), shownRevision(), document_->editor.state(), document_->head.get(),
+                   tool_ != nullptr || brush_.stroking());
     };
     project();
     if (!takeTools()) takeKeys();

@@ -110,6 +110,7 @@ class Studio {
   void takeMotion();
   void askForPicture(bool moving);
   void autosave();
+  std::uint64_t shownRevision() const;  ///< names the mesh that is shown: another number, another mesh
   PictureRequest pictureRequest(bool fine) const;
 
   // A turntable as pictures (turntable.cpp).
@@ -221,6 +222,7 @@ class Studio {
   std::unique_ptr<ModalTool> tool_;
   std::optional<HairMesh> attempt_;  // what the tool would leave
   std::uint64_t attemptNumber_ = 0;
+  std::uint64_t documentNumber_ = 0;  // how many were opened: each counts its revisions from 0
   std::string attemptLine_, refusal_;  // of the tool that runs
   std::string note_;                   // why something was refused, beside the mouse
   double noteUntil_ = 0;
