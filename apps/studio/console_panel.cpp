@@ -69,7 +69,7 @@ float Studio::drawConsole(const ImVec2& at, const ImVec2& size) {
   }
   ImGui::InputText("##line", &typed_, ImGuiInputTextFlags_CallbackHistory, Recall::turn, &recall);
   ImGui::PopID();
-  // By the window's own events: in a slow frame Enter may go down and up again.
+  // By the keys of this frame: the field itself has let go of the text when it says that Enter was pressed.
   const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   if (typing && window_.keys().pressed("Enter")) {
     typedBefore_.push_back(typed_);

@@ -44,14 +44,6 @@ bool Keys::pressed(const std::string& keys) const {
   return false;
 }
 
-std::vector<Keys> Keys::oneByOne() const {
-  std::vector<Keys> out;
-  for (const Down& down : downs_) {
-    if (down.key != 0) out.emplace_back().downs_ = {down};
-  }
-  return out;
-}
-
 bool Keys::pressedOne(const std::string& key) const {
   int modifiers = 0;
   std::size_t from = 0;

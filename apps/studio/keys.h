@@ -6,8 +6,7 @@
 
 namespace coif::studio {
 
-/// What went down since the last frame. Fed by the window's own key events, not by the keys' state once a
-/// frame: in a slow frame a key may go down and up again.
+/// What went down since the last frame, as the window's queue hands it out.
 class Keys {
  public:
   void down(int key, int modifiers) { downs_.push_back({key, modifiers, 0}); }
@@ -20,8 +19,6 @@ class Keys {
   void clear() { downs_.clear(); }
   /// Whether one of the combinations (spaces between) went down, with just these modifiers.
   bool pressed(const std::string& keys) const;
-  /// Each that went down as if alone, in order.
-  std::vector<Keys> oneByOne() const;
 
  private:
   bool pressedOne(const std::string& key) const;

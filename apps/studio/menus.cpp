@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <sstream>
 
 #include "studio.h"
 
@@ -87,7 +89,10 @@ void Studio::drawPalette() {
   int shown = 0;
   std::vector<MenuEntry> found = entries();
   std::erase_if(found, [&](const MenuEntry& entry) {
-    return lower(entry.label + " " + entry.name + " " + entry.menu).find(wanted) == std::string::npos;
+    const std::string text = lower(entry.label + " " + entry.name + " " + entry.menu);
+    std::istringstream words(wanted);  // each of them, in any order
+    return std::any_of(std::istream_iterator<std::string>(words), {},
+                       [&](const std::string& word) { return text.find(word) == std::string::npos; });
   });
   // What is meant to the letter comes first, and what only mentions it after what begins with it.
   const auto rank = [&](const MenuEntry& entry) {

@@ -305,13 +305,8 @@ void Studio::takeKeys() {
   if (!keyAskedFor_.empty()) return takeNewKey();
   if (ImGui::GetIO().WantTextInput || window_.keys().none()) return;
   if (turntable_ && window_.keys().pressed("Escape")) turntable_.reset(), say("the turntable was stopped");
-  const std::vector<Keys> downs = window_.keys().oneByOne();
   for (const MenuEntry& entry : entries()) {
-    if (!window_.keys().pressed(entry.key)) continue;
-    // Once for each time in a slow frame; another key may be meant for what this one began.
-    const auto times = std::ranges::count_if(downs, [&](const Keys& k) { return k.pressed(entry.key); });
-    for (std::ptrdiff_t i = 0; i < times && !tool_; ++i) carryOut(entry);
-    return;
+    if (window_.keys().pressed(entry.key)) return carryOut(entry);
   }
 }
 

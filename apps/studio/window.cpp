@@ -5,6 +5,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <cfloat>
 #include <utility>
 
 #include "theme.h"
@@ -60,15 +61,7 @@ Status Window::make(const Place& place) {
     to->dropped_.insert(to->dropped_.end(), paths, paths + count);
   });
 
-  // Before Dear ImGui's own, which calls this one on.
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
-    constexpr int kShown = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT;
-    if (action == GLFW_RELEASE) return;
-    static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.down(key, modifiers & kShown);
-  });
-  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
-    static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.character(codepoint);
-  });
+  listen();
   float x = 1, y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
   scale_ = x > 0 ? x : 1;
@@ -78,9 +71,74 @@ Status Window::make(const Place& place) {
     of->scale_ = to > 0 ? to : 1;
     of->themeOld_ = true;
   });
-  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  ImGui_ImplGlfw_InitForOpenGL(window_, false);
   ImGui_ImplOpenGL3_Init("#version 330");
   return {};
+}
+
+/// Keyboard and mouse go through the queue; what else Dear ImGui listens to goes straight to it.
+void Window::listen() {
+  static constexpr auto queue = [](GLFWwindow* window) -> InputQueue& {
+    return static_cast<Window*>(glfwGetWindowUserPointer(window))->input_;
+  };
+  using Event = InputQueue::Event;
+  using Kind = Event::Kind;
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    const Event event{Kind::Key, key, scancode, modifiers, action != GLFW_RELEASE};
+    action == GLFW_REPEAT ? queue(window).pushRepeat(event) : queue(window).push(event);
+  });
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
+    queue(window).push({Kind::Character, int(codepoint)});
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int modifiers) {
+    queue(window).push({Kind::Button, button, 0, modifiers, action == GLFW_PRESS});
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+    queue(window).push({.kind = Kind::Move, .x = x, .y = y});
+  });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
+    queue(window).push({.kind = Kind::Wheel, .x = x, .y = y});
+  });
+  glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
+  glfwSetCursorEnterCallback(window_, ImGui_ImplGlfw_CursorEnterCallback);
+  double x = 0, y = 0;
+  glfwGetCursorPos(window_, &x, &y);
+  pointer_ = {float(x), float(y)};
+}
+
+/// To the keys that Coif looks at and to Dear ImGui, whose backend would ask for the mouse's state now.
+void Window::handInput() {
+  ImGuiIO& io = ImGui::GetIO();
+  using Kind = InputQueue::Event::Kind;
+  const std::vector<InputQueue::Event> events = input_.next(io.WantTextInput);
+  for (const InputQueue::Event& event : events) {
+    switch (event.kind) {
+      case Kind::Key:
+        if (event.down) {
+          keys_.down(event.code, event.modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT));
+        }
+        ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode,
+                                   event.down ? GLFW_PRESS : GLFW_RELEASE, event.modifiers);
+        break;
+      case Kind::Character:
+        keys_.character(unsigned(event.code));
+        ImGui_ImplGlfw_CharCallback(window_, unsigned(event.code));
+        break;
+      case Kind::Button:
+        if (std::size_t(event.code) < buttons_.size()) buttons_[std::size_t(event.code)] = event.down;
+        break;
+      case Kind::Move:
+        pointer_ = {float(event.x), float(event.y)};
+        break;
+      case Kind::Wheel:
+        ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+        break;
+    }
+  }
+  for (std::size_t i = 0; i < buttons_.size(); ++i) io.MouseDown[i] = buttons_[i];
+  // Else where it is now: it may have come from behind another window.
+  if ((!events.empty() || !input_.empty()) && io.MousePos.x != -FLT_MAX)
+    io.MousePos = {pointer_.x(), pointer_.y()};
 }
 
 void Window::destroy() {
@@ -108,6 +166,8 @@ Status Window::rebuild() {
   const Place at = place();
   destroy();
   keys_.clear();
+  input_.clear();
+  buttons_ = {};
   Status made = make(at);
   if (!made.ok()) {
     return makeError(ErrorCode::Unsupported, "the driver was reset, and " + made.error().message +
@@ -144,9 +204,11 @@ Status Window::run(const Calls& calls) {
     refreshTheme();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    handInput();
     ImGui::NewFrame();
     go = calls.frame();
     keys_.clear();
+    if (!input_.empty()) pending = kFramesAfterEvent;
     ImGui::Render();
     if (!shown) continue;
     canvas_->clear(width, height, Vec3f(0.08f, 0.08f, 0.09f));

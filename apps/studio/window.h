@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "coif/base/result.h"
 #include "coif/preview/window_canvas.h"
+#include "input_queue.h"
 #include "keys.h"
 
 struct GLFWwindow;
@@ -58,13 +60,18 @@ class Window {
  private:
   Window() = default;
   Status make(const Place& place);  ///< the window itself, its context and what lives in it
+  void listen();
+  void handInput();
   void destroy();
   Status rebuild();
   bool contextLost();
   void refreshTheme();
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<WindowCanvas> canvas_;
+  InputQueue input_;
   Keys keys_;
+  std::array<bool, 5> buttons_{};  // down, as far as frames have seen
+  Vec2f pointer_ = Vec2f::Zero();  // where frames have seen it
   std::vector<std::string> dropped_;
   std::string title_, layoutFile_;
   float scale_ = 1;

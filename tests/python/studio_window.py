@@ -8,6 +8,7 @@ import contextlib
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import time
 
@@ -145,6 +146,13 @@ class Studio:
         yield
         self.tool("keyup", key)
         time.sleep(0.1)
+
+    @contextlib.contextmanager
+    def frozen(self):
+        """What is done in it comes to the studio all at once, as if a frame had taken that long."""
+        self.process.send_signal(signal.SIGSTOP)
+        yield
+        self.process.send_signal(signal.SIGCONT)
 
     def point(self, x, y):
         self.tool("mousemove", "--window", self.window, int(x), int(y))

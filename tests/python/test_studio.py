@@ -31,16 +31,6 @@ def test_the_head_and_the_hair_are_seen(studio):
     assert np.abs(view - np.median(view, axis=(0, 1))).max() > 60
 
 
-def test_a_key_pressed_five_times_in_a_frame_counts_five_times(studio):
-    studio.did("select_all", "a")
-    for _ in range(5):
-        studio.did("smooth", "shift+r")
-    before = len(studio.lines())
-    # Some milliseconds apart: GLFW takes presses of one key at one time for one.
-    studio.tool("key", "--delay", "6", *["ctrl+z"] * 5)
-    studio.wait(lambda: sum("undo" in line for line in studio.lines()[before:]) == 5, "five steps back")
-
-
 def test_keys_select_and_undo(studio):
     studio.key("3")
     studio.did('select_all(kind="face")', "a")

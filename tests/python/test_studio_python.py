@@ -109,6 +109,15 @@ def test_the_console_runs_what_is_typed(studio):
     studio.wait(lambda: any("select_none" in line for line in studio.lines()), "a new Python")
 
 
+def test_lines_typed_faster_than_the_frames_follow_one_another(studio):
+    lines = ["editor.select_all(kind='face')", "editor.select_none()", "editor.select_all(kind='vertex')"]
+    with studio.frozen():
+        studio.key("F4")
+        enter(studio, *lines)
+    studio.wait(lambda: len(studio.lines()) >= len(lines), "the console's commands")
+    assert [line.split("(")[0] for line in studio.lines()] == [line.split("(")[0] for line in lines]
+
+
 def test_a_scene_is_edited_from_python_and_comes_back(display, bob, monkeypatch):
     monkeypatch.setenv("DISPLAY", display)
     monkeypatch.setenv("XDG_STATE_HOME", str(bob.parent / "state"))
