@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "command.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -27,8 +28,11 @@ Status bench(const BenchArguments& arguments, Session& session) {
   options.context = session.context();
   std::ofstream rows;
   if (!arguments.folder.empty()) {
-    std::error_code failed;  // said when the report is written
+    std::error_code failed;
     std::filesystem::create_directories(arguments.folder, failed);
+    if (failed)
+      return makeError(ErrorCode::Unreadable, "the folder cannot be made: " + failed.message(), "",
+                       arguments.folder);
   }
   options.onFigure = [&](const BenchFigure& figure) {
     endProgress();
@@ -36,7 +40,8 @@ Status bench(const BenchArguments& arguments, Session& session) {
     std::snprintf(value, sizeof value, "%.4g", figure.value);
     if (!session.quiet) std::cerr << figure.name << ": " << value << " " << figure.unit << std::endl;
     if (arguments.folder.empty()) return;
-    const std::filesystem::path path = std::filesystem::path(arguments.folder) / (arguments.name + "-rows.csv");
+    const std::filesystem::path path =
+        std::filesystem::path(arguments.folder) / (arguments.name + "-rows.csv");
     if (!rows.is_open()) rows.open(path), rows << "figure,value,unit\n";
     rows << '"' << figure.name << "\"," << value << ',' << figure.unit << std::endl;
   };
@@ -74,10 +79,11 @@ void addBench(CLI::App& app, Session& session) {
   command->footer("Example:\n  coif bench place -o bench-out\n");
   command->add_option("name", arguments->name, "What to measure")->required()->check(CLI::IsMember(names));
   command->add_option("-o,--output", arguments->folder, "Folder for .csv, .svg and report.html");
-  command->add_option("--seed", arguments->seed, "Seed of the test cases");
-  command->add_option("--budget", arguments->budget,
-                      "gpu: seconds after which no further row is begun, 0 for no bound")
-      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--seed", arguments->seed, "Seed of the test cases")->check(wholeNumber());
+  command
+      ->add_option("--budget", arguments->budget,
+                   "gpu: seconds after which no further row is begun, 0 for no bound")
+      ->check(number(0, 1e6));
   command->add_flag("--quick", arguments->quick, "Fewer sizes, a few seconds");
   command->callback([arguments, &session] {
     if (const Status status = bench(*arguments, session); !status.ok()) session.fail(status.error());

@@ -1,4 +1,5 @@
 // coif build: a scene's strands, written to files.
+#include "coif/io/can_write.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 #include "scene_options.h"
@@ -17,6 +18,8 @@ struct BuildArguments {
 
 Status build(const BuildArguments& arguments, Session& session) {
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
+  for (const std::string& output : arguments.outputs) COIF_TRY(canSaveStrands(output));
+  COIF_TRY(arguments.evaluate.canTell());
   arguments.strands.apply(scene);
   Evaluation evaluation(arguments.evaluate.options());
   StrandExport what;

@@ -1,4 +1,5 @@
 // coif new: from a head model to a scene with a hairstyle.
+#include "coif/io/can_write.h"
 #include "coif/io/mesh_io.h"
 #include "coif/place/place.h"
 #include "coif/scalp/cage.h"
@@ -6,6 +7,7 @@
 #include "coif/scene/new_scene.h"
 #include "command.h"
 #include "region_option.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -56,6 +58,7 @@ Status makeScene(const NewArguments& arguments, Session& session) {
   COIF_ASSIGN(cap.head.forward, axis(arguments.forward));
   context.report("reading the head", 0);
   COIF_ASSIGN(PolygonMesh mesh, loadPolygonMesh(arguments.scalp));
+  COIF_TRY(canWrite(arguments.output));
   if (arguments.weldTolerance) {
     COIF_ASSIGN(Welded welded, weld(mesh, {*arguments.weldTolerance}));
     session.say(welded.report.text());
@@ -95,7 +98,7 @@ std::string checkCage(const std::string& text) {
   const bool digits =
       !text.empty() && text.size() < 7 && text.find_first_not_of("0123456789") == std::string::npos;
   if (digits && std::stoul(text) >= 4 && std::stoul(text) <= 100000) return "";
-  return "--cage wants 'exact' or a number of quads from 4 to 100000, not '" + text + "'";
+  return "'exact' or a number of quads from 4 to 100000 is wanted, not '" + text + "'";
 }
 
 }  // namespace
@@ -108,16 +111,18 @@ void addNew(CLI::App& app, Session& session) {
   command->add_option("--scalp", arguments->scalp, "The head: OBJ, PLY, OFF, STL, GLB, glTF or USD")
       ->required();
   command->add_option("--style", arguments->style, "The hairstyle")->required()->check(CLI::IsMember(styles));
-  command->add_option("-o,--output", arguments->output, "The scene to write, a .coif file")->required();
+  command->add_option("-o,--output", arguments->output, "The scene to write, a .coif file")
+      ->required()
+      ->check(sceneOut());
   command->add_option("--region", arguments->region, std::string("Where hair grows: ") + kRegionHelp);
   command
       ->add_option("--cage", arguments->cage,
                    "Number of quads of the root layer, or 'exact' for the head's own polygons")
       ->check(CLI::Validator(checkCage, "N|exact"));
   command->add_option("--meters-per-unit", arguments->metersPerUnit, "Unit of the head's file")
-      ->check(CLI::PositiveNumber);
+      ->check(number(1e-12, 1e12));
   command->add_option("--weld", arguments->weldTolerance, "First weld vertices closer than this")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number(0, 1e30));
   command->add_option("--mirror", arguments->mirror,
                       "Mirror plane as px,py,pz,nx,ny,nz, or 'none'; found unless given");
   command->add_option("--up", arguments->up, "Up axis of the head, such as z");

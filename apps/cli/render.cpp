@@ -4,6 +4,7 @@
 #ifdef COIF_WITH_PREVIEW
 #include <filesystem>
 
+#include "coif/io/can_write.h"
 #include "coif/io/safe_file.h"
 #include "coif/light/path_tracer.h"
 #include "coif/preview/session.h"
@@ -191,6 +192,8 @@ Result<Json> tracePicture(const Subject& subject, const Scene& scene, const Rend
 Status render(const Arguments& all, Session& session) {
   const RenderArguments& arguments = all.render;
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
+  COIF_TRY(canWrite(arguments.output));
+  COIF_TRY(all.evaluate.canTell());
   all.strands.apply(scene);
   COIF_TRY(all.dynamics.apply(scene));
   if (all.frames.asked())

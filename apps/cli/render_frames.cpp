@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "values.h"
+
 namespace coif::cli {
 namespace {
 
@@ -18,7 +20,7 @@ bool parseFrames(const std::string& text, unsigned long& from, unsigned long& to
 
 std::string checkFrames(const std::string& text) {
   unsigned long from, to;
-  return parseFrames(text, from, to) ? "" : "--frames wants N or A-B, counted from 1, not '" + text + "'";
+  return parseFrames(text, from, to) ? "" : "N or A-B, counted from 1, is wanted, not '" + text + "'";
 }
 
 }  // namespace
@@ -34,7 +36,7 @@ void FrameArguments::addTo(CLI::App& command, CLI::Option* alone) {
   command.add_option("--motion", motion, "A .coifcache of this scene, as coif simulate writes it")
       ->excludes(alone);
   command.add_option("--fps", framesPerSecond, "Frames a second of what is simulated here")
-      ->check(CLI::Range(0.01, 1e5));
+      ->check(number(0.01, 1e5));
 }
 
 std::size_t FrameArguments::first() const {

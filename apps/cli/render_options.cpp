@@ -9,6 +9,7 @@
 #include "coif/base/check.h"
 #include "coif/light/hair_color.h"
 #include "coif/preview/names.h"
+#include "values.h"
 
 namespace coif::cli {
 namespace {
@@ -42,28 +43,26 @@ bool parseFraction(const std::string& text, double& fraction) {
 
 std::string checkSize(const std::string& text) {
   int width, height;
-  return parseSize(text, width, height)
-             ? ""
-             : "--size wants WIDTHxHEIGHT from 1x1 to 8192x8192, not '" + text + "'";
+  return parseSize(text, width, height) ? ""
+                                        : "WIDTHxHEIGHT from 1x1 to 8192x8192 is wanted, not '" + text + "'";
 }
 std::string checkCamera(const std::string& text) {
   double azimuth, elevation;
   return parseAngles(text, azimuth, elevation)
              ? ""
-             : "--camera wants AZIMUTH,ELEVATION in degrees, not '" + text + "'";
+             : "AZIMUTH,ELEVATION in degrees, elevation from -90 to 90, is wanted, not '" + text + "'";
 }
 std::string checkLight(const std::string& text) {
   double azimuth, elevation;
   return text == "none" || parseAngles(text, azimuth, elevation)
              ? ""
-             : "--light wants AZIMUTH,ELEVATION in degrees as seen from the camera, or none, not '" + text +
-                   "'";
+             : "AZIMUTH,ELEVATION in degrees as seen from the camera, or none, is wanted, not '" + text + "'";
 }
 std::string checkLod(const std::string& text) {
   double fraction;
   return text == "auto" || text == "off" || parseFraction(text, fraction)
              ? ""
-             : "--lod wants auto, off or a part of the strands in (0, 1], not '" + text + "'";
+             : "auto, off or a part of the strands in (0, 1] is wanted, not '" + text + "'";
 }
 std::string checkOutput(const std::string& text) {
   const std::string extension = std::filesystem::path(text).extension();
@@ -181,7 +180,7 @@ CLI::Option* RenderArguments::addTo(CLI::App& command) {
   command.add_option("--spp", samplesPerPixel, "Samples a pixel of a path-traced picture")
       ->check(CLI::Range(2, 1 << 20));
   command.add_option("--target-error", targetError, "Path traced: stop at this relative error of a pixel")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(number(0, 10));
   CLI::Option* turn =
       command.add_option("--turntable", turntable, "So many pictures all around: FILE_0001.png …")
           ->check(CLI::Range(1, 10000));
@@ -190,7 +189,7 @@ CLI::Option* RenderArguments::addTo(CLI::App& command) {
   auto* hairOption = command.add_option("--hair", hair, "Hair colour by name")->check(CLI::IsMember(colors));
   command.add_option("--color", color, "Hair colour, linear R G B from 0 to 1")
       ->expected(3)
-      ->check(CLI::Range(0.0f, 1.0f))
+      ->check(number(0, 1))
       ->excludes(hairOption);
   command.add_flag("--hair-mesh", hairMesh, "Draw the hair mesh over the picture");
   command.add_flag("--no-strands", noStrands, "Leave the strands out");

@@ -2,8 +2,10 @@
 
 #include <iostream>
 
+#include "coif/io/can_write.h"
 #include "coif/io/safe_file.h"
 #include "coif/scene/dynamics_text.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -14,11 +16,11 @@ void StrandArguments::addTo(CLI::App& command) {
   command
       .add_option("--tolerance", tolerance,
                   "As many points as keep the chord error below this, in scene units")
-      ->check(CLI::PositiveNumber)
+      ->check(numberAbove0(1e30))
       ->excludes(fixed);
-  command.add_option("--seed", seed, "Seed of the root distribution");
+  command.add_option("--seed", seed, "Seed of the root distribution")->check(wholeNumber());
   command.add_option("--width", width, "Hair diameter at the root, in scene units")
-      ->check(CLI::PositiveNumber);
+      ->check(numberAbove0(1e30));
 }
 
 void StrandArguments::apply(Scene& scene) const {
@@ -30,6 +32,24 @@ void StrandArguments::apply(Scene& scene) const {
   if (width) settings.width = *width;
 }
 
+namespace {
+
+Status setOne(DynamicsSettings& settings, const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos)
+    return makeError(ErrorCode::InvalidArgument, "NAME=VALUE is wanted, not '" + text + "'");
+  return setDynamics(settings, text.substr(0, at), text.substr(at + 1));
+}
+
+/// A value that no scene could take is bad usage, found before the scene is read.
+std::string checkSetting(const std::string& text) {
+  DynamicsSettings any;
+  const Status status = setOne(any, text);
+  return status.ok() ? "" : status.error().text();
+}
+
+}  // namespace
+
 void DynamicsArguments::addTo(CLI::App& command) {
   const auto add = [&](const char* option, const char* setting, const char* help) {
     return command.add_option_function<std::string>(
@@ -39,7 +59,8 @@ void DynamicsArguments::addTo(CLI::App& command) {
       ->check(CLI::IsMember(std::vector<std::string>(std::begin(kMethodNames), std::end(kMethodNames))));
   add("--wind", "wind", "Kind of wind, instead of the scene's")
       ->check(CLI::IsMember(std::vector<std::string>(std::begin(kWindNames), std::end(kWindNames))));
-  add("--wisps", "wisps", "Simulate so many wisps of three guides, not the hair mesh; 0: the hair mesh");
+  add("--wisps", "wisps", "Simulate so many wisps of three guides, not the hair mesh; 0: the hair mesh")
+      ->check(CLI::Validator([](std::string& value) { return checkSetting("wisps=" + value); }, "N"));
   add("--precision", "precision", "Of the solver")
       ->check(
           CLI::IsMember(std::vector<std::string>(std::begin(kPrecisionNames), std::end(kPrecisionNames))));
@@ -47,17 +68,13 @@ void DynamicsArguments::addTo(CLI::App& command) {
   for (const std::string& name : dynamicsNames()) names += (names.empty() ? "" : ", ") + name;
   command
       .add_option("--set", set, "NAME=VALUE, a dynamics setting instead of the scene's; repeatable: " + names)
+      ->check(CLI::Validator(checkSetting, "NAME=VALUE"))
       ->allow_extra_args(false);
 }
 
 Status DynamicsArguments::apply(Scene& scene) const {
   for (const auto& [name, value] : named) COIF_TRY(setDynamics(scene.dynamics, name, value));
-  for (const std::string& text : set) {
-    const std::size_t at = text.find('=');
-    if (at == std::string::npos)
-      return makeError(ErrorCode::InvalidArgument, "--set wants NAME=VALUE, not '" + text + "'");
-    COIF_TRY(setDynamics(scene.dynamics, text.substr(0, at), text.substr(at + 1)));
-  }
+  for (const std::string& text : set) COIF_TRY(setOne(scene.dynamics, text));
   return {};
 }
 
@@ -77,6 +94,10 @@ EvaluateOptions EvaluateArguments::options() const {
   out.useHead = !noHead;
   out.force.insert(force.begin(), force.end());
   return out;
+}
+
+Status EvaluateArguments::canTell() const {
+  return reportFile.empty() ? Status() : canWrite(reportFile);
 }
 
 Status EvaluateArguments::tell(const std::vector<StageReport>& stages, const Session& session) const {

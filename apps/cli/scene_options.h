@@ -37,6 +37,8 @@ struct EvaluateArguments {
 
   void addTo(CLI::App& command);
   EvaluateOptions options() const;
+  /// Whether the report can be written, asked before the work.
+  Status canTell() const;
   /// What --explain and --report ask for.
   Status tell(const std::vector<StageReport>& stages, const Session& session) const;
 };

@@ -3,11 +3,13 @@
 #include <iostream>
 #include <sstream>
 
+#include "coif/io/can_write.h"
 #include "coif/io/safe_file.h"
 #include "coif/scene/dynamics_text.h"
 #include "coif/scene/evaluate.h"
 #include "command.h"
 #include "scene_options.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -62,17 +64,14 @@ Status simulate(const SimulateArguments& arguments, Session& session) {
   }
   const std::string extension = std::filesystem::path(arguments.output).extension().string();
   const bool cache = extension == ".coifcache";
-  if (extension == ".abc" && !writesAlembic()) {
-    return makeError(ErrorCode::Unsupported,
-                     "this Coif was built without Alembic; Blender reads the .usdc and writes .abc", "",
-                     arguments.output);
-  }
   if (!cache && extension != ".usda" && extension != ".usdc" && extension != ".usd" && extension != ".abc") {
     return makeError(ErrorCode::Unsupported,
                      "hair in motion is written as .coifcache, .usda, .usdc or .abc (glTF and .hair hold one "
                      "pose)",
                      "", arguments.output);
   }
+  COIF_TRY(cache ? canWrite(arguments.output) : canSaveStrands(arguments.output));
+  COIF_TRY(arguments.evaluate.canTell());
   if (cache) what.cache = arguments.output;
   Evaluation evaluation(arguments.evaluate.options());
   const Context context = session.context();
@@ -107,6 +106,8 @@ Status simulate(const SimulateArguments& arguments, Session& session) {
 
 Status drape(const DrapeArguments& arguments, Session& session) {
   COIF_ASSIGN(Scene scene, loadScene(arguments.scene));
+  COIF_TRY(canWrite(arguments.output));
+  COIF_TRY(arguments.evaluate.canTell());
   const double droop = scene.dynamics.droop;
   if (arguments.droop) scene.dynamics.droop = *arguments.droop;
   Evaluation evaluation(arguments.evaluate.options());
@@ -139,8 +140,7 @@ void addSimulate(CLI::App& app, Session& session) {
       ->required();
   command->add_option("--frames", arguments->what.frames, "How many frames")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
-  command->add_option("--fps", arguments->what.framesPerSecond, "Frames a second")
-      ->check(CLI::Range(1e-3, 1e5));
+  command->add_option("--fps", arguments->what.framesPerSecond, "Frames a second")->check(number(1e-3, 1e5));
   arguments->dynamics.addTo(*command);
   command->add_option("--head-motion", arguments->headMotion,
                       "A text file, a line a frame: x y z of the head, x y z w of its turn");
@@ -156,15 +156,13 @@ void addDrape(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("drape", "Let a scene's hair hang under gravity and keep the shape");
   command->footer("Example:\n  coif drape long.coif -o draped.coif --droop 0.5\n");
   command->add_option("scene", arguments->scene, "The scene, a .coif file")->required();
-  command->add_option("-o,--output", arguments->output, "The scene to write")->required();
-  command->add_option("--seconds", arguments->options.seconds, "Time at most")
-      ->check(CLI::Range(0.01, 3600.0));
+  command->add_option("-o,--output", arguments->output, "The scene to write")->required()->check(sceneOut());
+  command->add_option("--seconds", arguments->options.seconds, "Time at most")->check(number(0.01, 3600));
   command
       ->add_option("--settled", arguments->options.tolerance,
                    "Stop when nothing moves further in 1/24 s, as a fraction of the hair's size")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--droop", arguments->droop, "How limp; instead of the scene's")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number(0, 1e30));
+  command->add_option("--droop", arguments->droop, "How limp; instead of the scene's")->check(number(0, 1e6));
   arguments->evaluate.addTo(*command);
   command->callback([arguments, &session] {
     if (const Status status = drape(*arguments, session); !status.ok()) session.fail(status.error());

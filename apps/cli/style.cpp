@@ -5,6 +5,7 @@
 #include "coif/scene/editor.h"
 #include "coif/style/style_kinds.h"
 #include "command.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -154,7 +155,7 @@ void addStyle(CLI::App& app, Session& session) {
       ->add_option("--set", arguments->set,
                    "OPERATOR.PARAMETER=VALUE, also amount, enabled, seed and group; repeatable")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", arguments->output, "The scene to write");
+  command->add_option("-o,--output", arguments->output, "The scene to write")->check(sceneOut());
   command->callback([arguments, scene, &session] {
     if (arguments->kinds) return listKinds(session);
     if (scene->empty()) return session.usage("coif style wants a scene, or --list-kinds");

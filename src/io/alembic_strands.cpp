@@ -1,4 +1,5 @@
 // Strands as Alembic curves, with Unreal's groom attributes (schema 1.5); built where Alembic is installed.
+#include "coif/io/can_write.h"
 #include "io/formats.h"
 
 #ifdef COIF_WITH_ALEMBIC
@@ -165,9 +166,7 @@ Result<WriteReport> writeAlembic(const StrandExport& what, const std::filesystem
 namespace coif::io {
 
 Result<WriteReport> writeAlembic(const StrandExport&, const std::filesystem::path& path, const Context&) {
-  return makeError(ErrorCode::Unsupported,
-                   "this Coif was built without Alembic; Blender reads the .usdc and writes .abc", {},
-                   path.string());
+  return canSaveStrands(path).error();
 }
 
 }  // namespace coif::io

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "coif/io/can_write.h"
 #include "io/formats.h"
 #include "io/scan.h"
 
@@ -132,6 +133,12 @@ Result<StrandSet> readStrands(Bytes bytes, const fs::path& path) {
   }
 }
 
+Error noStrandWriter(const fs::path& path) {
+  return makeError(ErrorCode::Unsupported,
+                   "strands are written as .usda, .usdc, .usd, .abc, .gltf, .glb or .hair", {},
+                   path.string());
+}
+
 /// Reads, checks what was read, and names the file in every error.
 template <class T, class Read>
 Result<T> load(const fs::path& path, Read read) {
@@ -205,9 +212,24 @@ Result<WriteReport> saveStrands(const StrandExport& what, const fs::path& path, 
     case Format::Alembic:
       return io::writeAlembic(what, path, context);
     default:
-      return makeError(ErrorCode::Unsupported,
-                       "strands are written as .usda, .usdc, .usd, .abc, .gltf, .glb or .hair", {},
-                       path.string());
+      return noStrandWriter(path);
+  }
+}
+
+Status canSaveStrands(const fs::path& path) {
+  switch (formatOfExtension(extensionOf(path))) {
+    case Format::Alembic:
+      if (!writesAlembic())
+        return makeError(ErrorCode::Unsupported,
+                         "this Coif was built without Alembic; Blender reads the .usdc and writes .abc", {},
+                         path.string());
+      [[fallthrough]];
+    case Format::Hair:
+    case Format::Gltf:
+    case Format::Usd:
+      return canWrite(path);
+    default:
+      return noStrandWriter(path);
   }
 }
 

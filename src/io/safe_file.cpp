@@ -10,6 +10,8 @@
 #include <new>
 #include <system_error>
 
+#include "coif/io/can_write.h"
+
 namespace coif {
 namespace {
 
@@ -241,6 +243,11 @@ const fs::path& SafeFile::path() const {
 
 Status SafeFile::commit() {
   return impl_->finish();
+}
+
+Status canWrite(const fs::path& path) {
+  COIF_ASSIGN([[maybe_unused]] const SafeFile probe, SafeFile::create(path));
+  return {};
 }
 
 }  // namespace coif

@@ -5,12 +5,19 @@
 
 #include "coif/base/random.h"
 #include "coif/io/safe_file.h"
+#include "scene/scene_folder.h"
 
 namespace coif {
 
 std::filesystem::path Scene::headPath() const {
   if (head.path.is_absolute() || file.empty()) return head.path;
-  return file.parent_path() / head.path;
+  return scene::folderOf(file) / head.path;
+}
+
+std::filesystem::path scene::folderOf(const std::filesystem::path& sceneFile) {
+  std::error_code failed;
+  if (!std::filesystem::is_symlink(sceneFile, failed)) return sceneFile.parent_path();
+  return std::filesystem::weakly_canonical(sceneFile, failed).parent_path();
 }
 
 std::uint64_t meshHash(const HairMesh& mesh) {

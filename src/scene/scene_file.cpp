@@ -6,6 +6,7 @@
 #include "coif/scene/scene.h"
 #include "scene/dynamics_json.h"
 #include "scene/json_reader.h"
+#include "scene/scene_folder.h"
 #include "scene/style_json.h"
 #include "scene/typed_array.h"
 
@@ -213,7 +214,7 @@ Result<Scene> readScene(const nlohmann::json& json) {
     return makeError(ErrorCode::Malformed, "this is no Coif scene: \"format\": \"coif-scene\" is missing");
   }
   JsonReader reader(json);
-  const auto version = reader.integer("version", 0, 1, ~std::uint64_t{0});
+  const auto version = reader.integer("version", 0, 1, 1000000);
   COIF_TRY(reader.status());
   if (version > Scene::kVersion) {
     return makeError(ErrorCode::Unsupported,
@@ -239,6 +240,14 @@ Result<Scene> readScene(const nlohmann::json& json) {
   COIF_ASSIGN(out.hairMesh, readMesh(reader.object("hairMesh")));
   COIF_TRY(reader.status());
   return out;
+}
+
+bool isUtf8(const std::string& text) {
+  try {
+    return !ordered_json(text).dump().empty();
+  } catch (const ordered_json::type_error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -277,6 +286,12 @@ std::string sceneText(const Scene& scene) {
 }
 
 Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path) {
+  const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  if (first == std::string_view::npos)
+    return makeError(ErrorCode::Malformed, "the file is empty", "", path.string());
+  if (text[first] != '{')
+    return makeError(ErrorCode::Malformed, "this is no Coif scene: it does not begin with {", "",
+                     path.string());
   nlohmann::json json;
   try {
     json =
@@ -287,6 +302,8 @@ Result<Scene> parseScene(std::string_view text, const std::filesystem::path& pat
   } catch (const nlohmann::json::parse_error& error) {
     return makeError(ErrorCode::Malformed, "this is not valid JSON (is the file cut off?)",
                      "byte " + numberText(error.byte), path.string());
+  } catch (const nlohmann::json::out_of_range&) {
+    return makeError(ErrorCode::Malformed, "the JSON holds a number that is too large", "", path.string());
   } catch (const std::exception& error) {
     return makeError(ErrorCode::Malformed, error.what(), "", path.string());
   }
@@ -306,10 +323,14 @@ Status saveScene(Scene& scene, const std::filesystem::path& path) {
   if (!scene.head.path.empty()) {
     std::error_code failed;
     const auto absolute = std::filesystem::absolute(scene.headPath(), failed);
-    const auto folder = std::filesystem::absolute(path, failed).parent_path();
+    const auto folder = scene::folderOf(std::filesystem::absolute(path, failed));
     const auto relative = std::filesystem::proximate(absolute, folder, failed);
     saved.head.path = failed || relative.empty() ? absolute : relative;
   }
+  if (!isUtf8(saved.head.path.native()))
+    return makeError(ErrorCode::InvalidArgument,
+                     "a scene cannot name this head: its name or folder is not UTF-8; rename it", "",
+                     scene.headPath().string());
   saved.file = path;
   COIF_ASSIGN(auto file, SafeFile::create(path));
   file.write(sceneText(saved));

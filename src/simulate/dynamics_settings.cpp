@@ -1,5 +1,6 @@
 #include "coif/simulate/dynamics_settings.h"
 
+#include <cstdio>
 #include <string>
 
 namespace coif {
@@ -34,8 +35,9 @@ Status validate(const DynamicsSettings& s) {
                           {"hairFriction", s.hairFriction, 0, 1e6}};
   for (const Range& range : ranges) {
     if (range.value >= range.lo && range.value <= range.hi) continue;
-    return makeError(ErrorCode::InvalidArgument,
-                     std::string("the dynamics setting ") + range.name + " is outside its range", range.name);
+    char wanted[64];
+    std::snprintf(wanted, sizeof wanted, "a number from %g to %g is wanted here", range.lo, range.hi);
+    return makeError(ErrorCode::InvalidArgument, wanted, range.name);
   }
   if (!(s.windVelocity.cwiseAbs().maxCoeff() <= 1e4))
     return makeError(ErrorCode::InvalidArgument, "the wind is not finite or faster than 10 000 m/s",

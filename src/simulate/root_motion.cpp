@@ -8,6 +8,13 @@ namespace coif::simulate {
 
 namespace {
 
+/// In scene units; further away floats overflow in what is made of the motion.
+constexpr double kFarthest = 1e12;
+
+bool within(const Vec3& p) {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest;
+}
+
 Mat3 rotationOf(const Mat3& covariance) {
   if (covariance.isZero(0)) return Mat3::Identity();
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -46,16 +53,18 @@ Result<RootPath> RootPath::create(const HairMesh& mesh, const HeadMotion& motion
   for (std::size_t f = 0; f < motion.poses.size(); ++f) {
     const RigidPose& pose = motion.poses[f];
     const double off = (pose.rotation.transpose() * pose.rotation - Mat3::Identity()).cwiseAbs().maxCoeff();
-    if (!(off < 1e-6) || !(pose.rotation.determinant() > 0) || !pose.position.allFinite())
-      return makeError(ErrorCode::InvalidArgument, "the head's pose is no finite rotation and position",
+    if (!(off < 1e-6) || !(pose.rotation.determinant() > 0))
+      return makeError(ErrorCode::InvalidArgument, "the head's turn is no rotation",
+                       "frame " + std::to_string(f));
+    if (!within(pose.position))
+      return makeError(ErrorCode::InvalidArgument, "the head is not finite or further than 1e12 units away",
                        "frame " + std::to_string(f));
   }
   for (std::size_t f = 0; f < motion.roots.size(); ++f) {
     const auto& roots = motion.roots[f];
-    const bool finite = std::all_of(roots.begin(), roots.end(), [](const Vec3& p) { return p.allFinite(); });
-    if (roots.size() != path.rest_.size() || !finite)
+    if (roots.size() != path.rest_.size() || !std::all_of(roots.begin(), roots.end(), within))
       return makeError(ErrorCode::InvalidArgument,
-                       "a finite position for each of the " + std::to_string(path.rest_.size()) +
+                       "a position within 1e12 units for each of the " + std::to_string(path.rest_.size()) +
                            " root vertices is wanted",
                        "frame " + std::to_string(f));
   }

@@ -221,7 +221,7 @@ def test_wisps_are_simulated_explained_and_shown(scenes, tmp_path):
     assert "other wisps" in run("render", scene, "-o", tmp_path / "x.png", "--motion", cache, status=1).stderr
     run("simulate", scene, "--frames", 2, *wisps, "--strands", 50, "-o", tmp_path / "w.usda")
     assert "points.timeSamples" in (tmp_path / "w.usda").read_text()
-    refused = run("simulate", scene, "--set", "drop=1", "-o", tmp_path / "n.coifcache", status=1).stderr
+    refused = run("simulate", scene, "--set", "drop=1", "-o", tmp_path / "n.coifcache", status=2).stderr
     assert "no dynamics setting named 'drop'" in refused and "droop" in refused
 
 

@@ -59,6 +59,37 @@ TEST(SceneFile, HeadPathFollowsTheFile) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(SceneFile, HeadPathStartsFromTheFileBehindALink) {
+  const auto folder = std::filesystem::temp_directory_path() / "coif-scene-link-test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "scenes");
+  Scene scene = test::sampleScene();
+  scene.head.path = folder / "head.obj";
+  ASSERT_TRUE(saveScene(scene, folder / "scenes" / "a.coif").ok());
+  std::filesystem::create_symlink("scenes/a.coif", folder / "link.coif");
+  const auto head = std::filesystem::weakly_canonical(folder / "head.obj");
+  auto linked = loadScene(folder / "link.coif");
+  ASSERT_TRUE(linked.ok()) << linked.error().text();
+  EXPECT_EQ(std::filesystem::weakly_canonical(linked->headPath()), head);
+  ASSERT_TRUE(saveScene(*linked, folder / "link.coif").ok());  // written through the link
+  for (const char* name : {"link.coif", "scenes/a.coif"}) {
+    const auto again = loadScene(folder / name);
+    ASSERT_TRUE(again.ok()) << again.error().text();
+    EXPECT_EQ(std::filesystem::weakly_canonical(again->headPath()), head) << name;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(SceneFile, RefusesAHeadThatTextCannotName) {
+  const auto path = std::filesystem::temp_directory_path() / "coif-scene-utf8-test.coif";
+  Scene scene = test::sampleScene();
+  scene.head.path = "/heads/\xe9.obj";
+  const Status status = saveScene(scene, path);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().text().find("not UTF-8"), std::string::npos) << status.error().text();
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 /// Sets one entry of the sample scene and expects a refusal that names `place`.
 void expectRefused(const std::function<void(json&)>& spoil, const std::string& place,
                    ErrorCode code = ErrorCode::Malformed) {
@@ -145,7 +176,7 @@ TEST(SceneFile, TruncatedAndFlippedBytesNeverCrash) {
 }
 
 TEST(SceneFile, DeepNestingIsRefusedWithoutRecursion) {
-  const auto result = parseScene(std::string(100000, '['), "deep.coif");
+  const auto result = parseScene("{\"format\":" + std::string(100000, '['), "deep.coif");
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().text().find("nested"), std::string::npos);
 }

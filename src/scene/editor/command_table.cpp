@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace coif {
 namespace editor {
@@ -57,7 +58,10 @@ std::string faultOf(const CommandArgument& argument, const CommandValue& value) 
   const auto outside = [&](double v) { return !(v >= argument.least && v <= argument.most); };
   if (const auto* v = std::get_if<double>(&value)) {
     if (outside(*v)) {
-      return "must lie between " + std::to_string(argument.least) + " and " + std::to_string(argument.most);
+      if (!std::isfinite(*v)) return "must be finite";
+      char range[64];
+      std::snprintf(range, sizeof range, "must lie between %g and %g", argument.least, argument.most);
+      return range;
     }
     if (argument.kind == ArgumentKind::Integer && *v != std::floor(*v)) return "must be a whole number";
   } else if (const auto* list = std::get_if<std::vector<double>>(&value)) {
