@@ -1,7 +1,10 @@
 #include "coif/strands/grow.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <new>
 #include <stdexcept>
 
@@ -30,6 +33,23 @@ Status checkOptions(const GrowOptions& options) {
     return invalid("the scene's unit must be a length above zero");
   }
   return {};
+}
+
+/// Refuses what is more than the machine has: asked for it bit by bit, it would swap for minutes and then end
+/// the process without a word.
+Status checkMemory(const GrowOptions& options) {
+  constexpr double kStrandBytes = 84;  // of a root, its weights and what a StrandSet holds of each strand
+  constexpr double kPointBytes = sizeof(Vec3f) + sizeof(float);
+  constexpr double kGiB = 1 << 30;
+  const double points = options.tolerance ? 2 : options.points;  // at least
+  const double wanted = double(options.count) * (kStrandBytes + points * kPointBytes);
+  const double there = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (!(there > 0) || wanted <= there) return {};
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "%zu strands do not fit into memory: they take %.0f GiB, and there are %.0f", options.count,
+                wanted / kGiB, there / kGiB);
+  return makeError(ErrorCode::TooLarge, text);
 }
 
 /// Where strands start on the head, and the texture there.
@@ -96,6 +116,7 @@ double boxDiagonal(std::span<const Vec3f> points) {
 Result<GrowResult> growWhole(const HairMesh& mesh, const GrowOptions& options, const Context& context) {
   const Stopwatch watch;
   COIF_TRY(checkOptions(options));
+  COIF_TRY(checkMemory(options));
   context.report("placing roots", 0);
   COIF_ASSIGN(RootSet roots, placeRoots(mesh, {options.count, options.seed, options.density}, context));
   GrowResult result;

@@ -232,6 +232,7 @@ TEST(Grow, RefusesBadInput) {
   expectRefused(mesh, {.density = few}, ErrorCode::InvalidArgument);
   expectRefused(mesh, {.density = none}, ErrorCode::Degenerate);
   expectRefused(mesh, {.count = std::size_t{1} << 33}, ErrorCode::TooLarge);
+  expectRefused(mesh, {.count = std::size_t{1} << 31, .points = 65536}, ErrorCode::TooLarge);  // 2 PiB: said at once
   expectRefused(samples::gridRoot(2, 2), {}, ErrorCode::Degenerate);
   expectRefused(HairMesh{}, {}, ErrorCode::Degenerate);
   EXPECT_EQ(grown(HairMesh{}, {.count = 0}).strands.strandCount(), 0u);
