@@ -13,6 +13,8 @@ namespace {
 
 #include "simulate/newton_system.h"
 
+#include "simulate/step_objective.h"
+
 #include "simulate/direct_kernel.h"
 #include "simulate/projecting_kernel.h"
 }  // namespace
