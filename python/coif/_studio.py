@@ -19,7 +19,7 @@ import tempfile
 
 import numpy as np
 
-from . import _coif
+from . import _coif, _commands
 
 
 class _Link:
@@ -81,12 +81,10 @@ class StudioEditor:
         self._link.ask(run=command, arguments={name: _plain(value) for name, value in arguments.items()})
 
     def __getattr__(self, name):
-        if name.startswith("_") or not any(c["name"] == name for c in _coif.editor_commands()):
-            raise AttributeError(f"the editor has no command '{name}'")
-        return lambda **arguments: self.run(name, **arguments)
+        return _commands.method(self, name)
 
     def __dir__(self):
-        return [*super().__dir__(), *(c["name"] for c in _coif.editor_commands())]
+        return _commands.listed(self)
 
     def _state(self, what):
         return self._link.ask(state=what)

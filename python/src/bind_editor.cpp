@@ -77,10 +77,7 @@ void run(EditorModel& model, const std::string& command, const nb::kwargs& given
 }
 
 nb::object commandNamed(nb::handle self, const std::string& name) {
-  if (findCommand(name) == nullptr) {
-    throw nb::attribute_error(("coif.Editor has no command '" + name + "'").c_str());
-  }
-  return nb::module_::import_("functools").attr("partial")(self.attr("run"), name);
+  return nb::module_::import_("coif._commands").attr("method")(self, name);
 }
 
 nb::list commandList() {
@@ -124,6 +121,7 @@ void bindEditor(nb::module_& m) {
       .def("run", &run, "command"_a, "arguments"_a,
            "Runs a command by name with its arguments by keyword; see coif.editor_commands().")
       .def("__getattr__", &commandNamed, "name"_a)
+      .def("__dir__", [](nb::handle self) { return nb::module_::import_("coif._commands").attr("listed")(self); })
       .def(
           "save",
           [](EditorModel& model, const std::filesystem::path& path) { take(model.editor.save(path)); },

@@ -51,6 +51,16 @@ def test_saved_documents_hold_what_was_edited(path, tmp_path):
     assert scene.hair_mesh == editor.mesh and scene.strands.count == 500 and scene.strands.points == 12
 
 
+def test_commands_say_what_they_do(path):
+    editor = coif.Editor.open(path)
+    commands = {info["name"]: info for info in coif.editor_commands()}
+    assert set(commands) <= set(dir(editor)) and "python_log" in dir(editor)
+    for name, info in commands.items():
+        method = getattr(editor, name)
+        assert method.__name__ == name and method.__doc__.startswith(info["help"])
+        assert all(f"{argument}: {text}" in method.__doc__ for argument, text in info["arguments"].items())
+
+
 def test_refusals_are_sentences_and_change_nothing(path):
     editor = coif.Editor.open(path)
     before = editor.mesh
