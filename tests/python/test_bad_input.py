@@ -86,7 +86,7 @@ FAULTS = [  # status, what the sentence says, the command
       for v in ("nan", "1e300")],
     (2, "--seed: a whole number from 0 is wanted, not '-1'", BUILD + ["--seed", "-1"]),
     (2, "--strands: ", BUILD + ["--strands", "-1"]),
-    (1, "more than 2^31", BUILD + ["--strands", "4294967296"]),
+    (1, "4294967296 strands ", BUILD + ["--strands", "4294967296"]),  # of memory or of 2^31
     (1, "do not fit into memory", BUILD + ["--strands", "2000000000", "--points", "65536"]),
     *[(2, f"--meters-per-unit: a number from 1e-12 to 1e+12 is wanted, not '{v}'", new("--meters-per-unit", v))
       for v in ("nan", "inf", "0", "1e300")],
