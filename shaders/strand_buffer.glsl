@@ -66,7 +66,9 @@ StrandPoint unpackPoint(PackedPoint p) {
 
 #ifdef SYNTHESISE_IN_PLACE
 #include "synthesis.glsl"
+#ifndef STYLED
 StrandPoint strandPointAt(int point) { return synthesise(placeOf(uint(point))); }
+#endif
 #else
 layout(std430, binding = 0) readonly buffer StrandPoints { PackedPoint strandPoints[]; };
 StrandPoint strandPointAt(int point) { return unpackPoint(strandPoints[point]); }

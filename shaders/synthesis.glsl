@@ -35,6 +35,10 @@ layout(location = 11) uniform uint shareCount;
 layout(location = 12) uniform float widthScale;
 layout(location = 13) uniform bool colored;
 
+#ifdef STYLED
+layout(location = 14) uniform uint curvePoints;  // samples of the columns: a strand's points at full detail
+#endif
+
 struct Place { uint share, strand, sampleIndex; };
 
 // The share that holds a point of the batch: the last that starts at or before it.
@@ -53,13 +57,19 @@ vec3 direction(vec3 d) {
   return size > 0.0 ? normalize(d / size) : vec3(0);
 }
 
-#ifdef IMPORTED
+// Which of a strand's points is sample k of a few.
+uint pointTaken(uint k, uint samples, uint points) {
+  return samples >= points ? min(k, points - 1u)
+                           : (2u * k * (points - 1u) + samples - 1u) / (2u * (samples - 1u));
+}
+
+#ifdef STYLED
+#elif defined(IMPORTED)
 StrandPoint synthesise(Place place) {
   Share share = shares[place.share];
   Root root = roots[locks[share.lock].rootStart + share.firstStrand + place.strand];
   uint last = root.count - 1u;
-  uint i = share.samples >= root.count ? min(place.sampleIndex, last)
-           : (2u * place.sampleIndex * last + share.samples - 1u) / (2u * (share.samples - 1u));
+  uint i = pointTaken(place.sampleIndex, share.samples, root.count);
   vec4 here = rawPoints[root.first + i];
   vec3 d = rawPoints[root.first + min(i + 1u, last)].xyz - rawPoints[root.first + max(i, 1u) - 1u].xyz;
   vec3 color = colored ? colors[root.first + i].rgb : vec3(0);

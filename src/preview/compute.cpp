@@ -28,6 +28,16 @@ void fill(const Buffer& buffer, std::uint32_t value) {
   glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
+void write(const Buffer& buffer, const void* data, std::size_t bytes) {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glNamedBufferSubData(buffer.name(), 0, GLsizeiptr(bytes), data);
+}
+
+void read(const Buffer& buffer, std::size_t from, void* data, std::size_t bytes) {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glGetNamedBufferSubData(buffer.name(), GLintptr(from), GLsizeiptr(bytes), data);
+}
+
 void dispatchGroups(std::size_t count) {
   const std::size_t x = std::min(count, kMostGroups);
   if (x > 0) dispatch(x, (count + x - 1) / x);

@@ -46,7 +46,7 @@ Result<ComputeCoverage> PreviewSession::coverageByCompute(int width, int height,
     glFinish();
     const double seconds = watch.seconds();
     result.seconds = k == 0 ? seconds : std::min(result.seconds, seconds);
-    if (k + 1 == kRepeats) glGetNamedBufferSubData(optical.name(), 0, GLsizeiptr(pixels * 4), depths.data());
+    if (k + 1 == kRepeats) read(optical, 0, depths.data(), pixels * 4);
   }
   COIF_TRY(my.device->programs->error());
   if (const auto& errors = my.device->gl->log().errors; !errors.empty()) {

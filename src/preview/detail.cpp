@@ -101,7 +101,7 @@ bool goodEnough(std::span<const Vec3> curve, std::uint32_t samples, double toler
   const std::size_t last = curve.size() - 1;
   std::size_t a = 0;
   for (std::uint32_t k = 1; k < samples; ++k) {
-    const std::size_t b = (2 * k * last + samples - 1) / (2 * (samples - 1));
+    const std::size_t b = pointTaken(k, samples, std::uint32_t(curve.size()));
     const Vec3 chord = curve[b] - curve[a];
     if (b > a + 1 && chord.norm() > longest) return false;
     for (std::size_t i = a + 1; i < b; ++i) {
@@ -112,7 +112,7 @@ bool goodEnough(std::span<const Vec3> curve, std::uint32_t samples, double toler
   return true;
 }
 
-/// Points a strand of a lock of strands that came as points.
+/// Points a strand of a lock of strands that came as points, or are styled.
 std::uint32_t importedSamples(const HairModel::Members& lock, const DetailOptions& options,
                               const PixelSize& pixelAt) {
   const std::uint32_t most = lock.mostPoints;
@@ -130,21 +130,34 @@ std::uint32_t importedSamples(const HairModel::Members& lock, const DetailOption
   return most;
 }
 
+/// Samples of a lock's strands, and the parameters at which its columns are sampled for them.
+struct LockSamples {
+  std::uint32_t samples = 0;  ///< 0: it is not drawn
+  std::vector<float> parameters;
+};
+
 std::vector<float> lockParameters(const HairModel& model, std::size_t l, const DetailOptions& options,
                                   const PixelSize& pixelAt) {
   const Lock& lock = model.locks[l];
   const HairModel::Members& members = model.members[l];
-  if (members.ranks.empty() || !members.finite) return {};
-  if (!model.synthesised) {
-    return std::vector<float>(importedSamples(members, options, pixelAt));
-  }
-  if (!options.lod) {
-    const std::vector<double> even = evenParameters(lock.height, model.fullPoints);
+  if (!options.lod || model.styled) {  // frames follow the whole curve
+    const std::vector<double> even = evenParameters(lock.height, model.fullPoints());
     return {even.begin(), even.end()};
   }
   const double pixel = smallestPixel(model, lock, pixelAt);
   return simplified(fineColumns(model, lock, members.maxLift), options.tolerancePx * pixel,
                     options.longestPx * pixel);
+}
+
+LockSamples lockSamples(const HairModel& model, std::size_t l, const DetailOptions& options,
+                        const PixelSize& pixelAt) {
+  const HairModel::Members& members = model.members[l];
+  if (members.ranks.empty() || !members.finite) return {};
+  if (!model.synthesised) return {importedSamples(members, options, pixelAt), {}};
+  LockSamples out{0, lockParameters(model, l, options, pixelAt)};
+  out.samples =
+      model.styled ? importedSamples(members, options, pixelAt) : std::uint32_t(out.parameters.size());
+  return out;
 }
 
 /// Mean diameter in pixels of the strands.
@@ -177,29 +190,30 @@ double greatestWidthPx(const HairModel& model, const PixelSize& pixelAt) {
 std::size_t prefixLength(const HairModel& model, double meanSegments, const DetailOptions& options,
                          const PixelSize& pixelAt) {
   const double count = double(model.strands);
-  if (!options.lod) return model.strands;
-  if (options.fraction > 0) return std::size_t(std::clamp(std::round(options.fraction * count), 1.0, count));
-  const double bound = double(options.maxSegments) / std::max(meanSegments, 1.0);
+  const std::size_t most = model.styled ? model.styledStrands : model.strands;
+  if (!options.lod) return most;
+  if (options.fraction > 0)
+    return std::size_t(std::clamp(std::round(options.fraction * count), 1.0, double(most)));
+  const double bound = std::min(double(options.maxSegments) / std::max(meanSegments, 1.0), double(most));
   const double wanted =
       std::max(count * meanWidthPx(model, pixelAt) / options.ribbonPx, double(options.leastStrands));
   const double share = std::min(wanted, bound) / std::max(count, 1.0);
   if (share >= 1) return model.strands;
   const double least = std::min(double(options.leastStrands), bound);
-  return std::size_t(std::clamp(std::max(count * stepped(share), least), 1.0, count));
+  return std::size_t(std::clamp(std::max(count * stepped(share), least), 1.0, double(most)));
 }
 
 /// Adds `count` strands of a lock to the plan, cut where a batch is full.
-void addLock(std::uint32_t lock, std::uint32_t corners, std::size_t count, std::span<const float> parameters,
-             bool keepParameters, std::size_t batchPoints, DetailPlan& plan) {
-  const std::uint32_t samples = std::uint32_t(parameters.size());
+void addLock(std::uint32_t lock, std::size_t count, const LockSamples& of, std::size_t columns,
+             std::size_t batchPoints, DetailPlan& plan) {
+  const std::uint32_t samples = of.samples;
+  const std::size_t parameters = of.parameters.size();
   std::size_t parameterStart = plan.parameters.size();
-  if (keepParameters) {
-    if (parameterStart >= samples &&
-        std::equal(parameters.begin(), parameters.end(), plan.parameters.end() - samples)) {
-      parameterStart -= samples;
-    } else {
-      plan.parameters.insert(plan.parameters.end(), parameters.begin(), parameters.end());
-    }
+  if (parameterStart >= parameters && std::equal(of.parameters.begin(), of.parameters.end(),
+                                                 plan.parameters.end() - std::ptrdiff_t(parameters))) {
+    parameterStart -= parameters;
+  } else {
+    plan.parameters.insert(plan.parameters.end(), of.parameters.begin(), of.parameters.end());
   }
   for (std::size_t first = 0; first < count;) {
     if (plan.batches.empty() || plan.batches.back().points + samples > batchPoints) {
@@ -211,7 +225,7 @@ void addLock(std::uint32_t lock, std::uint32_t corners, std::size_t count, std::
     const std::uint32_t taken = std::uint32_t(std::min(room, count - first));
     plan.shares.push_back({lock, std::uint32_t(first), taken, samples, batch.points, batch.strands,
                            std::uint32_t(parameterStart), std::uint32_t(plan.columns)});
-    plan.columns += std::size_t(corners) * samples;
+    plan.columns += columns;
     ++batch.shares;
     batch.points += taken * samples;
     batch.strands += taken;
@@ -237,14 +251,14 @@ std::uint32_t ladderStep(std::uint32_t segments) {
 DetailPlan makePlan(const HairModel& model, const DetailOptions& options, const PixelSize& pixelAt,
                     const Context& context) {
   DetailPlan plan;
-  std::vector<std::vector<float>> parameters(model.locks.size());
-  parallelFor(context, model.locks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t l = begin; l < end; ++l) parameters[l] = lockParameters(model, l, options, pixelAt);
+  std::vector<LockSamples> locks(model.locks.size());
+  parallelFor(context, locks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t l = begin; l < end; ++l) locks[l] = lockSamples(model, l, options, pixelAt);
   });
   double segments = 0;
-  for (std::size_t l = 0; l < parameters.size(); ++l) {
-    if (!parameters[l].empty())
-      segments += double(model.members[l].ranks.size()) * double(parameters[l].size() - 1);
+  for (std::size_t l = 0; l < locks.size(); ++l) {
+    if (locks[l].samples > 0)
+      segments += double(model.members[l].ranks.size()) * double(locks[l].samples - 1);
   }
   const std::size_t prefix =
       prefixLength(model, segments / std::max<double>(double(model.strands), 1), options, pixelAt);
@@ -252,13 +266,13 @@ DetailPlan makePlan(const HairModel& model, const DetailOptions& options, const 
   const double greatest = plan.widthScale * greatestWidthPx(model, pixelAt);
   plan.lines = options.lines && greatest <= 1;
   plan.thin = greatest <= kThinPx;
-  for (std::size_t l = 0; l < parameters.size(); ++l) {
-    if (parameters[l].empty()) continue;
+  for (std::size_t l = 0; l < locks.size(); ++l) {
+    if (locks[l].samples == 0) continue;
     const auto& ranks = model.members[l].ranks;
     const auto count =
         std::size_t(std::lower_bound(ranks.begin(), ranks.end(), std::uint32_t(prefix)) - ranks.begin());
-    addLock(std::uint32_t(l), model.locks[l].corners, count, parameters[l], model.synthesised,
-            options.batchPoints, plan);
+    const std::size_t columns = model.locks[l].corners * locks[l].parameters.size() + (model.styled ? 1 : 0);
+    addLock(std::uint32_t(l), count, locks[l], columns, options.batchPoints, plan);
   }
   return plan;
 }

@@ -252,9 +252,8 @@ std::vector<HairMap::Answer> HairMap::query(const Programs& programs, std::span<
   glUniform1i(0, int(points.size()));
   glUniform1i(1, options_.filter ? 1 : 0);
   dispatchInvocations(points.size());
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<Answer> answers(points.size());
-  glGetNamedBufferSubData(out.name(), 0, GLsizeiptr(answers.size() * sizeof(Answer)), answers.data());
+  read(out, 0, answers.data(), answers.size() * sizeof(Answer));
   return answers;
 }
 

@@ -29,8 +29,7 @@ TransmittanceBound HairMap::bound(const Programs& programs) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, out.name());
   glUseProgram(programs[ProgramId::MapBound]);
   dispatchSquare(view_.size);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(out.name(), 0, GLsizeiptr(sums.size() * sizeof(Vec4f)), sums.data());
+  read(out, 0, sums.data(), sums.size() * sizeof(Vec4f));
   double weighted = 0, weight = 0, worst = 0;
   for (const Vec4f& sum : sums) {
     weighted += double(sum.x());

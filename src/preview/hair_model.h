@@ -16,6 +16,7 @@
 #include "coif/strands/catmull_rom.h"
 #include "coif/strands/roots.h"
 #include "coif/strands/strand_set.h"
+#include "coif/strands/strand_style.h"
 
 namespace coif::preview {
 
@@ -51,6 +52,7 @@ struct CoarseStrands {
   };
   std::vector<Point> points;
   std::vector<std::uint32_t> starts{0};  ///< S + 1
+  std::vector<float> longer;             ///< S: length of the strand over that of these few points
   Box box;                               ///< of the points
   double scale = 1;                      ///< by which widths were raised
 
@@ -60,40 +62,74 @@ struct CoarseStrands {
   }
 };
 
+constexpr std::uint32_t kCoarsePoints = 13;  ///< of a coarse strand on a hair mesh
+
+/// Some of the strands on a hair mesh, made again on the CPU when it moves.
+struct SampledRoots {
+  RootSet roots;  ///< ids: places in the set that was given
+  std::vector<Vec3f> landings;
+  std::vector<float> widths;  ///< root and tip in turn
+
+  void add(const StrandSet& strands, std::size_t s, std::uint32_t bundle);
+  void sort(std::size_t bundles);  ///< when all were added
+};
+
+/// What styling adds to some strands, and at which of a strand's points.
+struct SampledStyle {
+  std::vector<Vec3f> offsets;       ///< `points` a strand
+  std::vector<float> reach, turns;  ///< a strand
+  std::vector<float> widths;        ///< factors of the points, or none
+  std::uint32_t points = 0;         ///< evenly from root to tip
+};
+
+/// Which of a strand's points is sample k of a few; as shaders/synthesis.glsl has it.
+std::uint32_t pointTaken(std::uint32_t k, std::uint32_t samples, std::uint32_t points);
+/// Of a polyline.
+double lengthOf(std::span<const Vec3> points);
+
 struct HairModel {
   /// The strands of a lock, as places in the progressive order of all strands kept; ascending.
   struct Members {
     std::vector<std::uint32_t> ranks;
     double restLift = 0, maxLift = 0;  ///< greatest distance from cage to head: at rest, and a bound for now
     bool finite = true;                ///< its vertices are
-    std::uint32_t mostPoints = 0;      ///< of its strands, where they came as points
-    std::vector<std::vector<Vec3>> examples;  ///< a few of its strands, where they came as points
+    float longer = 1;                  ///< as CoarseStrands has it, on average, where strands are styled
+    std::uint32_t mostPoints = 0;      ///< of its strands, where they came as points or are styled
+    std::vector<std::vector<Vec3>>
+        examples;  ///< a few of its strands, where they came as points or are styled
   };
   bool synthesised = false, colored = false;
+  bool styled = false;  ///< what styling adds to strands on a hair mesh is on the GPU
   std::vector<Lock> locks;
   std::vector<Members> members;
   std::vector<std::uint32_t> bundleVertices;
   HairMesh mesh;           ///< as it is now
   std::vector<Vec3> rest;  ///< its vertices as they were when lifts were measured
   Knots knots = Knots::Uniform;
-  std::uint32_t fullPoints = 0;  ///< a strand on a hair mesh, at full detail
-  std::size_t strands = 0;       ///< kept
-  std::size_t dropped = 0;       ///< values not finite, too few points, or no such bundle
-  double baseScale = 1;          ///< widths were raised by this for strands that did not fit
+  std::uint32_t plainPoints = 0;   ///< a strand on a hair mesh, at full detail
+  std::uint32_t styledPoints = 0;  ///< the same where it is styled
+  std::size_t strands = 0;         ///< kept
+  std::size_t dropped = 0;         ///< values not finite, too few points, or no such bundle
+  std::size_t styledStrands = 0;   ///< those whose style fits there: a prefix
+  double baseScale = 1;            ///< widths were raised by this for strands that did not fit
   CoarseStrands coarse;
 
   std::size_t hidden() const;  ///< strands of locks with a vertex that is not finite
+  std::uint32_t fullPoints() const { return styled ? styledPoints : plainPoints; }
   /// The control points of a column, root first.
   std::vector<Vec3> column(const Lock& lock, std::uint32_t corner) const;
   std::vector<double> intervals(const Lock& lock) const;
-  /// New positions, as many as before; the coarse strands follow.
+  /// New positions, as many as before; the coarse strands and the examples follow.
   void move(std::span<const Vec3> positions, const Context& context);
+  void sample(const Context& context);  ///< coarse strands and examples of a hair mesh, as it is now
 
   void finishCoarse();  ///< box and widths of the coarse strands
 
-  RootSet coarseRoots;  ///< how the coarse strands are made
-  std::vector<Vec3f> coarseLandings;
-  std::vector<float> coarseWidths;  ///< root and tip in turn
+  // How coarse strands and examples are made of a hair mesh.
+  SampledRoots coarseRoots, exampleRoots;
+  SampledStyle coarseStyle, exampleStyle;
+  std::vector<std::uint32_t>
+      places;  ///< by strand as it was given: where it is in the sorted roots; kNone: dropped
 };
 
 struct PreparedHair {
@@ -105,6 +141,14 @@ struct PreparedHair {
 /// start and how wide they are. Errors: InvalidArgument without weights or with weights of the wrong number.
 Result<PreparedHair> prepareGrown(const HairMesh& mesh, const StrandSet& strands, Knots knots,
                                   const Context& context);
+
+/// What goes to the GPU of a style of the strands that were given to prepareGrown. Starts with a vec4 a lock:
+/// x: how many strands lie before its first. Then n vec4 a strand: offset and factor of the width; in place
+/// of the first offset, which is none, reach and turn at the root. Only a prefix of the strands where
+/// `maxPoints` do not hold all. Errors: InvalidArgument for a style of other strands, or of strands of
+/// different numbers of points.
+Result<std::vector<Eigen::Vector4f>> prepareStyle(HairModel& model, const StrandStyle& style,
+                                                  std::size_t maxPoints, const Context& context);
 
 /// Strands as points. At most `maxPoints` go to the GPU: a prefix, with the widths raised in its place.
 Result<PreparedHair> prepareImported(const StrandSet& strands, std::size_t maxPoints, const Context& context);

@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kCoarseStrands = 8192;
 constexpr std::uint32_t kCoarseImported = 17;  // points a strand, at most
 constexpr std::size_t kExamples = 48;          // a lock
+constexpr std::size_t kStyledExamples = 8;     // a bundle, made again whenever the mesh moves
 
 bool usableWidth(float width) {
   return std::isfinite(width) && width >= 0;
@@ -21,7 +22,8 @@ std::uint32_t seedOf(const StrandSet& strands, std::size_t s) {
 }
 /// Shaders tell where a strand ends by the next one's seed.
 void separateNeighbours(std::vector<Root>& roots) {
-  for (std::size_t r = 1; r < roots.size(); ++r) roots[r].seed ^= roots[r].seed == roots[r - 1].seed ? 1u : 0u;
+  for (std::size_t r = 1; r < roots.size(); ++r)
+    roots[r].seed ^= roots[r].seed == roots[r - 1].seed ? 1u : 0u;
 }
 Eigen::Vector4f vec4(const Vec3f& v, float w = 0) {
   return {v.x(), v.y(), v.z(), w};
@@ -81,28 +83,6 @@ std::uint32_t bundleOfStrand(const HairMesh& mesh, const StrandSet& strands, std
   return !strands.colors.empty() && !strands.colors[first].allFinite() ? kNone : bundle;
 }
 
-void addCoarseRoot(const StrandSet& strands, std::size_t s, std::uint32_t bundle, HairModel& model) {
-  RootSet& roots = model.coarseRoots;
-  if (roots.weightOffsets.empty()) roots.weightOffsets.push_back(0);
-  roots.ids.push_back(s);
-  roots.bundles.push_back(bundle);
-  for (std::uint64_t w = strands.weightOffsets[s]; w < strands.weightOffsets[s + 1]; ++w)
-    roots.weights.push_back(strands.weights[w]);
-  roots.weightOffsets.push_back(roots.weights.size());
-  model.coarseLandings.push_back(strands.points[strands.offsets[s]]);
-  model.coarseWidths.push_back(widthAt(strands, strands.offsets[s]));
-  model.coarseWidths.push_back(widthAt(strands, strands.offsets[s + 1] - 1));
-}
-
-void sortCoarseRoots(RootSet& roots, std::size_t bundles) {
-  roots.bundleStarts.assign(bundles + 1, 0);
-  for (const std::uint32_t b : roots.bundles) ++roots.bundleStarts[b + 1];
-  for (std::size_t b = 0; b < bundles; ++b) roots.bundleStarts[b + 1] += roots.bundleStarts[b];
-  std::vector<std::uint64_t> next = roots.bundleStarts;
-  roots.byBundle.resize(roots.size());
-  for (std::size_t r = 0; r < roots.size(); ++r) roots.byBundle[next[roots.bundles[r]]++] = std::uint32_t(r);
-}
-
 double liftOf(const HairMesh& mesh, std::uint32_t bundle, std::span<const float> weights, const Vec3f& root) {
   Vec3 sum = Vec3::Zero();
   const auto face = mesh.bundles()[bundle].face(0);
@@ -119,10 +99,15 @@ void addExample(const StrandSet& strands, std::size_t s, HairModel::Members& loc
 void addCoarseImported(const StrandSet& strands, std::size_t s, CoarseStrands& coarse) {
   const std::size_t begin = strands.offsets[s], last = strands.offsets[s + 1] - begin - 1;
   const std::size_t pieces = std::min<std::size_t>(last, kCoarseImported - 1);
+  std::vector<Vec3> all, few;
   for (std::size_t k = 0; k <= pieces; ++k) {
     const std::size_t p = begin + k * last / pieces;
     coarse.points.push_back({strands.points[p], widthAt(strands, p)});
+    few.push_back(strands.points[p].cast<double>());
   }
+  for (const Vec3f& p : strands.strand(s)) all.push_back(p.cast<double>());
+  const double length = lengthOf(few);
+  coarse.longer.push_back(length > 0 ? float(lengthOf(all) / length) : 1.0f);
   coarse.starts.push_back(std::uint32_t(coarse.points.size()));
 }
 
@@ -158,15 +143,17 @@ Result<PreparedHair> prepareGrown(const HairMesh& mesh, const StrandSet& strands
     upload.roots[sorted.places[s]] = {strands.points[first], widthAt(strands, first), widthAt(strands, last),
                                       seedOf(strands, s),    std::uint32_t(weight),   corners};
     if (model.colored) upload.colors[sorted.places[s]] = vec4(strands.colors[first]);
-    model.fullPoints = std::max(model.fullPoints, std::uint32_t(last - first + 1));
+    model.plainPoints = std::max(model.plainPoints, std::uint32_t(last - first + 1));
     double& lift = model.members[lockOf[s]].restLift;
     lift = std::max(lift, liftOf(mesh, lockOf[s], std::span(strands.weights).subspan(weight, corners),
                                  strands.points[first]));
-    if (model.coarseRoots.size() < kCoarseStrands) addCoarseRoot(strands, s, lockOf[s], model);
+    if (model.coarseRoots.roots.size() < kCoarseStrands) model.coarseRoots.add(strands, s, lockOf[s]);
+    if (sorted.places[s] - model.locks[lockOf[s]].rootStart < kStyledExamples)
+      model.exampleRoots.add(strands, s, lockOf[s]);
   }
   separateNeighbours(upload.roots);
-  if (model.coarseRoots.weightOffsets.empty()) model.coarseRoots.weightOffsets.push_back(0);
-  sortCoarseRoots(model.coarseRoots, mesh.bundles().size());
+  model.coarseRoots.sort(mesh.bundles().size()), model.exampleRoots.sort(mesh.bundles().size());
+  model.places = sorted.places;
   std::vector<Vec3> positions = model.rest;
   model.move(positions, context);
   return hair;

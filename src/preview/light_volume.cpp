@@ -40,7 +40,8 @@ std::vector<float> hairOpticalSize(const LightVolume& grid, const CoarseStrands&
       const Vec3 from = a.position.cast<double>(), d = b.position.cast<double>() - from;
       const double length = d.norm();
       const int steps = 1 + int(std::min(length / (0.7 * grid.cell), 1000.0));
-      const float amount = float(perCell * 0.5 * (double(a.width) + b.width) * length / steps);
+      const double all = length * double(strands.longer[s]);
+      const float amount = float(perCell * 0.5 * (double(a.width) + b.width) * all / steps);
       for (int k = 0; k < steps; ++k) optical[cellIndex(grid, from + d * ((k + 0.5) / steps))] += amount;
     }
   }

@@ -75,8 +75,10 @@ std::span<const ProgramSource> allPrograms() {
       {"fullscreen.vert", "resolve.frag", {}},
       {"fullscreen.vert", "finish.frag", {}},
       {"strand_columns.comp", "", {}},
+      {"strand_columns.comp", "", {"STYLED"}},
       {"strand_points.comp", "", {}},
       {"strand_points.comp", "", {"IMPORTED"}},
+      {"strand_styled.comp", "", {}},
       {"strand_raster.comp", "", {}},
       {"strand_raster.comp", "", {"NEAREST"}},
   };

@@ -30,8 +30,10 @@ enum class ProgramId {
   Resolve,
   Finish,
   StrandColumns,
+  StrandColumnsStyled,
   StrandPoints,
   StrandPointsImported,
+  StrandStyled,
   StrandRaster,
   StrandRasterNearest,
 };

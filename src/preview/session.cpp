@@ -13,7 +13,12 @@ PreviewSession::Impl::~Impl() {
 }
 
 void PreviewSession::Impl::dropHair() {
-  eyeStrands.reset(), shadowStrands.reset(), hairBuffers.reset(), shadows.reset();
+  dropStrands();
+  hairBuffers.reset();
+}
+
+void PreviewSession::Impl::dropStrands() {
+  eyeStrands.reset(), shadowStrands.reset(), shadows.reset();
   eyeLines.reset(), cameraMap.reset(), sliced.reset();
   fog.reset();
 }
@@ -27,7 +32,7 @@ Status PreviewSession::setHair(const HairMesh& mesh, const StrandSet& strands, K
   COIF_TRY(validate(strands, false));
   COIF_ASSIGN(PreparedHair hair, prepareGrown(mesh, strands, knots, context));
   if (points == 1) return makeError(ErrorCode::InvalidArgument, "a strand needs at least two points");
-  if (points > 1) hair.model.fullPoints = points;
+  if (points > 1) hair.model.plainPoints = points;
   clearHair();
   impl_->hair = std::move(hair);
   return {};
@@ -43,8 +48,18 @@ Status PreviewSession::setStrands(const StrandSet& strands, const Context& conte
 
 void PreviewSession::clearHair() {
   impl_->withContext([&] { impl_->dropHair(); });
-  impl_->hair.reset();
+  impl_->hair.reset(), impl_->style.reset();
   impl_->hairMoved = false;
+}
+
+Status PreviewSession::setStyle(const StrandStyle& style, const Context& context) {
+  if (!impl_->hair || !impl_->hair->model.synthesised)
+    return makeError(ErrorCode::InvalidArgument, "there is no hair on a hair mesh to style");
+  HairModel& model = impl_->hair->model;
+  if (style.empty() && !model.styled) return {};
+  impl_->withContext([&] { impl_->dropStrands(); });
+  COIF_ASSIGN(impl_->style, prepareStyle(model, style, impl_->device->mostRawPoints, context));
+  return {};
 }
 
 Status PreviewSession::moveHair(std::span<const Vec3> positions, const Context& context) {

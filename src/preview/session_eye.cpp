@@ -137,7 +137,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
     frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
     frame.viewport.z() = float(k);
-    glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+    write(frameBuffer, &frame, sizeof frame);
     COIF_TRY(drawSubframe(options, view, k == 0));
     context.report("picture", double(k + 1) / options.subframes);
   }

@@ -21,7 +21,8 @@ struct PreviewSession::Impl {
   std::optional<Ground> ground;
   std::optional<HairMesh> overlay;
   std::optional<PreparedHair> hair;
-  bool hairMoved = false;  ///< the mesh on the GPU is older than the model's
+  bool hairMoved = false;                             ///< the mesh on the GPU is older than the model's
+  std::optional<std::vector<Eigen::Vector4f>> style;  ///< what has to go to the GPU
 
   std::unique_ptr<HeadBuffers> headBuffers;
   std::unique_ptr<OverlayPass> overlayPass;
@@ -77,6 +78,7 @@ struct PreviewSession::Impl {
   double leastCoverage(const View& view) const;
   const Fog& theFog();  ///< made when it is first asked for
   void dropHair();
+  void dropStrands();  ///< what was made from hair on the GPU
   /// Runs `action` with the context current; nothing happens where it cannot be.
   template <class Action>
   void withContext(Action action) {

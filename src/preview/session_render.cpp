@@ -143,6 +143,10 @@ void PreviewSession::Impl::upload(Picture& picture) {
     picture.uploaded.strands = hairBuffers->bytes();
     hair->upload = {};
   }
+  if (style) {
+    picture.uploaded.style = hairBuffers->setStyle(*style);
+    style.reset();
+  }
   if (hair->model.synthesised && (first || hairMoved)) {
     picture.uploaded.hairMesh = hairBuffers->move(hair->model);
     eyeOld = shadowOld = eyeLinesOld = true;
@@ -229,7 +233,7 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
   if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair &&
       sameMap(visibility, shadowOptions)) {
     copyShadowFields(shadowFrame, frame);
-    glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+    write(frameBuffer, &frame, sizeof frame);
     report(picture, "shadow maps", withHair ? StageState::Reused : StageState::Skipped,
            withHair ? "light and hair did not move" : "no hair, or shadows are off");
     return {};
@@ -245,7 +249,7 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
                                                    : "asked for");
   const StageTimer timer(stage, options.measure);
   shadows.reset();
-  glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);
+  write(frameBuffer, &frame, sizeof frame);
   const Vec3 up = frame.viewUp.head<3>().cast<double>();
   if (withHair && (fog == nullptr || openness == nullptr || openness->up != up))
     openness = std::make_unique<Openness>(openSides(theFog(), up, context));
@@ -284,7 +288,7 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   Buffer frameBuffer = makeBuffer(std::span<const FrameData>(&frame, 1), GL_DYNAMIC_STORAGE_BIT);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, frameBuffer.name());
   COIF_TRY(makeShadows(options, frame, frameBuffer, picture, context));
-  glNamedBufferSubData(frameBuffer.name(), 0, sizeof frame, &frame);  // with what the maps filled in
+  write(frameBuffer, &frame, sizeof frame);  // with what the maps filled in
   COIF_TRY(makeEye(options, view, picture));
   COIF_TRY(makeSlices(options, view, frame, picture));
   if (hair && options.leaveOut && options.transparency == PreviewTransparency::Auto &&

@@ -74,8 +74,7 @@ Result<SlicedHair> SlicedHair::make(const Programs& programs, const StrandBuffer
   const Buffer counted = emptyBuffer(counts.size() * 4, GL_DYNAMIC_STORAGE_BIT);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, counted.name());
   run(sortPrograms()[0]);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(counted.name(), 0, GLsizeiptr(counts.size() * 4), counts.data());
+  read(counted, 0, counts.data(), counts.size() * 4);
   std::uint32_t sum = 0;
   for (std::size_t s = 0; s < std::size_t(slices); ++s) {
     hair.starts_[s] = sum;
@@ -86,7 +85,7 @@ Result<SlicedHair> SlicedHair::make(const Programs& programs, const StrandBuffer
     }
   }
   hair.starts_.back() = sum;
-  glNamedBufferSubData(counted.name(), 0, GLsizeiptr(counts.size() * 4), counts.data());
+  write(counted, counts.data(), counts.size() * 4);
   hair.segments_ = emptyBuffer(std::max<std::size_t>(sum, 1) * 4);
   hair.shades_ = emptyBuffer(points * 16);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, hair.segments_.name());

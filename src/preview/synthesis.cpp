@@ -65,9 +65,7 @@ std::size_t HairBuffers::move(const HairModel& model) {
   for (const HairVertex& v : model.mesh.vertices()) {
     positions.emplace_back(float(v.position.x()), float(v.position.y()), float(v.position.z()), 0.0f);
   }
-  if (!positions.empty()) {
-    glNamedBufferSubData(vertices_.name(), 0, GLsizeiptr(positions.size() * 16), positions.data());
-  }
+  if (!positions.empty()) write(vertices_, positions.data(), positions.size() * 16);
   return positions.size() * 16;
 }
 
@@ -75,8 +73,14 @@ void HairBuffers::bindForColumns() const {
   bind(1, locks_), bind(3, vertices_), bind(4, bundleVertices_);
 }
 
-void HairBuffers::bindForPoints(bool synthesised) const {
-  bind(1, locks_), bind(3, roots_), bind(4, synthesised ? weights_ : points_), bind(5, colors_);
+void HairBuffers::bindForPoints(const HairModel& model) const {
+  bind(1, locks_), bind(3, roots_), bind(4, model.synthesised ? weights_ : points_), bind(5, colors_);
+  if (model.styled) bind(8, style_);
+}
+
+std::size_t HairBuffers::setStyle(std::span<const Eigen::Vector4f> style) {
+  style_ = makeBuffer(style);
+  return style.size_bytes();
 }
 
 StrandBuffers::StrandBuffers(const HairModel& model, const HairBuffers& hair, const Programs& programs,
@@ -102,33 +106,44 @@ StrandBuffers::StrandBuffers(const HairModel& model, const HairBuffers& hair, co
 
 void StrandBuffers::makeColumns(const HairModel& model, const HairBuffers& hair,
                                 const Programs& programs) const {
-  glUseProgram(programs[ProgramId::StrandColumns]);
+  glUseProgram(programs[model.styled ? ProgramId::StrandColumnsStyled : ProgramId::StrandColumns]);
   hair.bindForColumns();
   bind(2, shares_), bind(5, parameters_), bind(6, columns_);
   glUniform1ui(0, GLuint(plan_.shares.size()));
   glUniform1i(1, int(model.knots));
+  if (model.styled) glUniform1ui(14, model.fullPoints());
   dispatchGroups(plan_.shares.size());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void StrandBuffers::describe(const HairModel& model) const {
+  glUniform1i(2, int(topology_));
+  glUniform1f(12, float(plan_.widthScale));
+  glUniform1i(13, model.colored ? 1 : 0);
+  if (!model.styled) return;
+  glUniform1ui(3, GLuint(model.locks.size()));
+  glUniform1ui(14, model.fullPoints());
 }
 
 void StrandBuffers::make(const HairModel& model, const HairBuffers& hair, const Programs& programs) const {
   if (plan_.points == 0) return;
   if (model.synthesised) makeColumns(model, hair, programs);
-  glUseProgram(programs[model.synthesised ? ProgramId::StrandPoints : ProgramId::StrandPointsImported]);
-  hair.bindForPoints(model.synthesised);
+  glUseProgram(programs[model.styled        ? ProgramId::StrandStyled
+                        : model.synthesised ? ProgramId::StrandPoints
+                                            : ProgramId::StrandPointsImported]);
+  hair.bindForPoints(model);
   bind(2, shares_), bind(6, columns_), bind(7, indices_);
-  glUniform1i(2, int(topology_));
-  glUniform1f(12, float(plan_.widthScale));
-  glUniform1i(13, model.colored ? 1 : 0);
+  describe(model);
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     const Batch& batch = plan_.batches[b];
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
                       GLsizeiptr(batch.points * kPackedPoint));
-    glUniform1ui(0, batch.points);
+    const std::uint32_t invocations = model.styled ? batch.strands : batch.points;
+    glUniform1ui(0, invocations);
     glUniform1ui(1, GLuint(indexOffsets_[b]));
     glUniform1ui(10, batch.firstShare);
     glUniform1ui(11, batch.shares);
-    dispatchInvocations(batch.points);
+    dispatchInvocations(invocations);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                   GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -181,8 +196,7 @@ std::vector<StrandBuffers::Point> StrandBuffers::readBack() const {
   std::vector<Point> out;
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     std::vector<Packed> packed(plan_.batches[b].points);
-    glGetNamedBufferSubData(points_.name(), GLintptr(pointOffsets_[b] * kPackedPoint),
-                            GLsizeiptr(packed.size() * kPackedPoint), packed.data());
+    read(points_, pointOffsets_[b] * kPackedPoint, packed.data(), packed.size() * kPackedPoint);
     for (const Packed& p : packed) {
       out.push_back({p.position, p.width, tangentFrom(p.tangent),
                      Vec3f(halfToFloat(p.redGreen & 0xffff), halfToFloat(p.redGreen >> 16),

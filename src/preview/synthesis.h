@@ -16,13 +16,15 @@ class HairBuffers {
   HairBuffers(const HairModel& model, const HairUpload& upload);
   /// Uploads the mesh's vertices; says how many bytes.
   std::size_t move(const HairModel& model);
+  /// Uploads what prepareStyle made; says how many bytes.
+  std::size_t setStyle(std::span<const Eigen::Vector4f> style);
   std::size_t bytes() const { return bytes_; }  ///< of what was uploaded by the constructor
   void bindForColumns() const;
-  void bindForPoints(bool synthesised) const;
+  void bindForPoints(const HairModel& model) const;
 
  private:
   std::size_t bytes_ = 0;
-  Buffer locks_, bundleVertices_, vertices_, roots_, weights_, points_, colors_;
+  Buffer locks_, bundleVertices_, vertices_, roots_, weights_, points_, colors_, style_;
 };
 
 enum class Topology { Ribbons, Lines, Segments };
@@ -56,6 +58,8 @@ class StrandBuffers {
   std::vector<Point> readBack() const;
 
  private:
+  /// Uniforms of the bound program that makes points.
+  void describe(const HairModel& model) const;
   void makeColumns(const HairModel& model, const HairBuffers& hair, const Programs& programs) const;
 
   void bindBatch(std::size_t batch) const;

@@ -51,14 +51,6 @@ Axes axesOf(const HairMesh& mesh, UpAxis upAxis) {
   return axes;
 }
 
-Vec3 firstTangent(std::span<const Vec3f> points) {
-  for (std::size_t p = 0; p + 1 < points.size(); ++p) {
-    const Vec3 step = points[p + 1].cast<double>() - points[p].cast<double>();
-    if (step.norm() > 0) return step.normalized();
-  }
-  return Vec3::Zero();
-}
-
 /// Angle from the face's frame to up × tangent: the same direction on both sides of a bundle's border.
 float rootTurn(const Frame& face, std::span<const Vec3f> points, const Vec3& up) {
   const Vec3 tangent = firstTangent(points), across = up.cross(tangent);
@@ -103,27 +95,10 @@ Result<Embedding> embed(const HairMesh& mesh, const StrandSet& strands, double c
       for (std::size_t i = 0; i < face.size(); ++i)
         root += double(strands.weights[strands.weightOffsets[s] + i]) * mesh.position(face[i]);
       const Frame& faceOf = faces[out.bundles[s]];
-      out.places[s] = {strands.ids[s], StyledStrand::inFrame(axes.frame, root) / cm,
-                       StyledStrand::inFrame(axes.frame, faceOf.tangent)};
+      out.places[s] = {strands.ids[s], axes.frame.inFrame(root) / cm, axes.frame.inFrame(faceOf.tangent)};
       out.rootTurns[s] = rootTurn(faceOf, strands.strand(s), axes.frame.tangent);
     }
   });
-  return out;
-}
-
-std::vector<Frame> rootFaceFrames(const HairMesh& mesh) {
-  std::vector<Frame> frames;
-  for (const Bundle& bundle : mesh.bundles()) frames.push_back(faceFrame(rootCorners(mesh, bundle)));
-  return frames;
-}
-
-Frame rootFrame(const Frame& face, std::span<const Vec3f> points, float turn) {
-  const Vec3 tangent = firstTangent(points);
-  if (tangent.isZero(0)) return face;
-  const Frame frame = turnedTo(face, tangent);
-  Frame out = frame;
-  out.normal = std::cos(double(turn)) * frame.normal + std::sin(double(turn)) * frame.binormal;
-  out.binormal = out.tangent.cross(out.normal);
   return out;
 }
 

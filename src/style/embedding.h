@@ -23,11 +23,6 @@ Result<std::vector<std::uint32_t>> bundlesOf(const HairMesh& mesh, const StrandS
 /// Errors: InvalidArgument for strands without ids, root faces or weights, or of another mesh.
 Result<Embedding> embed(const HairMesh& mesh, const StrandSet& strands, double cm, const Context& context);
 
-/// One frame a bundle: of its root face.
-std::vector<Frame> rootFaceFrames(const HairMesh& mesh);
-/// The frame that a strand starts with: its face's, turned to its first tangent and then about it.
-Frame rootFrame(const Frame& face, std::span<const Vec3f> points, float turn);
-
 /// Σ λ_i values[corner i] of a strand's root face.
 double atRoot(const HairMesh& mesh, const StrandSet& strands, std::uint32_t bundle, std::size_t strand,
               std::span<const double> values);

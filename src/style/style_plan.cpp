@@ -234,10 +234,7 @@ Status StylePlan::apply(const HairMesh& mesh, StrandSet& strands, const Context&
       for (std::size_t p = 0; p < curve.size(); ++p) {
         const std::size_t at = strands.offsets[s] + p;
         const double place = double(p) * double(reach_[s]);
-        const Vec3 offset = offsets_[at].cast<double>();
-        Vec3 styled = curve.position(place);
-        if (!offset.isZero(0)) styled += StyledStrand::inSpace(curve.frame(place), offset);
-        strands.points[at] = styled.cast<float>();
+        strands.points[at] = styledPoint(curve, place, offsets_[at].cast<double>()).cast<float>();
         if (!widths_.empty()) strands.widths[at] *= widths_[at];
       }
     }

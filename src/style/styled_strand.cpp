@@ -32,7 +32,7 @@ double StyledStrand::fraction(std::size_t p) const {
 
 Vec3 StyledStrand::positionAt(double at) const {
   const Vec3 offset = splineAt<Vec3>(offsets_, at);
-  return curve_->position(at * reach_) + inSpace(curve_->frame(at * reach_), offset);
+  return styledPoint(*curve_, at * reach_, offset);
 }
 
 void StyledStrand::endAt(double tip) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "coif/base/random.h"
+#include "coif/strands/strand_style.h"
 #include "coif/style/ramp.h"
-#include "style/strand_curve.h"
 
 namespace coif::style {
 
@@ -58,7 +58,7 @@ class StyledStrand {
   /// 0 at the root, 1 at the tip, by length.
   double fraction(std::size_t p) const;
   const Frame& frame(std::size_t p) const { return frames_[p]; }
-  Vec3 position(std::size_t p) const { return base_[p] + inSpace(frames_[p], offsets_[p]); }
+  Vec3 position(std::size_t p) const { return base_[p] + frames_[p].inSpace(offsets_[p]); }
   /// Between points too.
   Vec3 positionAt(double at) const;
 
@@ -67,7 +67,7 @@ class StyledStrand {
     if (p > 0) offsets_[p] += Vec3(normal, binormal, 0);
   }
   void moveTo(std::size_t p, const Vec3& position) {
-    if (p > 0) offsets_[p] = inFrame(frames_[p], position - base_[p]);
+    if (p > 0) offsets_[p] = frames_[p].inFrame(position - base_[p]);
   }
   void scaleWidth(std::size_t p, double factor) { widths_[p] *= factor; }
   /// Ends the strand at a place of [0, size() − 1], or beyond: then it goes straight on. Its points spread
@@ -75,13 +75,6 @@ class StyledStrand {
   void endAt(double tip);
   /// Ends it so that the mesh's curve below is so long.
   void endAtArc(double arc);
-
-  static Vec3 inSpace(const Frame& f, const Vec3& o) {
-    return o.x() * f.normal + o.y() * f.binormal + o.z() * f.tangent;
-  }
-  static Vec3 inFrame(const Frame& f, const Vec3& v) {
-    return {f.normal.dot(v), f.binormal.dot(v), f.tangent.dot(v)};
-  }
 
  private:
   void spread();

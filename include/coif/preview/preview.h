@@ -98,6 +98,7 @@ struct PreviewOptions {
 /// Bytes that went to the GPU for a picture.
 struct PreviewUpload {
   std::uint64_t strands = 0;   ///< roots, weights, points that came as points, colours, topology
+  std::uint64_t style = 0;     ///< what styling adds to strands on a hair mesh
   std::uint64_t hairMesh = 0;  ///< its vertices
   std::uint64_t head = 0, overlay = 0;
   std::uint64_t plan = 0;   ///< which strands and samples are drawn: by bundle, not by strand

@@ -11,6 +11,7 @@
 
 #include "coif/preview/preview.h"
 #include "coif/strands/catmull_rom.h"
+#include "coif/strands/strand_style.h"
 
 namespace coif {
 
@@ -33,11 +34,18 @@ class PreviewSession {
   /// Hair grown on `mesh` by grow() with these knots: `strands` carry bundles and weights, and of their
   /// points only the first and last are looked at (place and diameters), so two a strand do. The picture has
   /// at most `points` a strand (0: as many as the longest of `strands`). Styles that moved points are not
-  /// seen: use setStrands for those. Errors: InvalidArgument where bundles or weights are missing; those of
-  /// validate. A strand whose bundle is gone or with a value that is not finite is left out and counted.
-  /// Positions agree with StrandSampler's within 1e-5 of the bounding box.
+  /// seen: setStyle lays them on, or use setStrands. Errors: InvalidArgument where bundles or weights are
+  /// missing; those of validate. A strand whose bundle is gone or with a value that is not finite is left out
+  /// and counted. Positions agree with StrandSampler's within 1e-5 of the bounding box.
   Status setHair(const HairMesh& mesh, const StrandSet& strands, Knots knots = Knots::Uniform,
                  std::uint32_t points = 0, const Context& context = {});
+  /// What styling adds to the strands of setHair (StylePlan::view), in their order; they have as many points
+  /// as it from then on. Copied. It follows the mesh wherever moveHair takes it, and is uploaded once; an
+  /// empty one takes it off. Where the driver's storage blocks do not hold it, a prefix of the strands is
+  /// drawn, wider. Errors: InvalidArgument without setHair, for a style of other strands, of strands of
+  /// different numbers of points or that moves roots; what was there is then shown without a style. Positions
+  /// agree with StylePlan::apply within 1e-5 of the bounding box.
+  Status setStyle(const StrandStyle& style, const Context& context = {});
   /// Strands as they are.
   Status setStrands(const StrandSet& strands, const Context& context = {});
   void clearHair();

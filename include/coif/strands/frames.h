@@ -13,6 +13,10 @@ struct Frame {
   Vec3 tangent = Vec3::UnitZ();
   Vec3 normal = Vec3::UnitX();
   Vec3 binormal = Vec3::UnitY();
+
+  // Vectors along normal, binormal, tangent.
+  Vec3 inSpace(const Vec3& o) const { return o.x() * normal + o.y() * binormal + o.z() * tangent; }
+  Vec3 inFrame(const Vec3& v) const { return {normal.dot(v), binormal.dot(v), tangent.dot(v)}; }
 };
 
 /// Of a root face (>= 3 corners): the tangent is its Newell normal, the normal runs along its first side. A

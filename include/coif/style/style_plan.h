@@ -21,6 +21,7 @@
 #include "coif/hairmesh/hair_mesh.h"
 #include "coif/scalp/surface.h"
 #include "coif/strands/strand_set.h"
+#include "coif/strands/strand_style.h"
 #include "coif/style/style_operator.h"
 
 namespace coif {
@@ -64,12 +65,8 @@ class StylePlan {
   const StyleReport& report() const { return report_; }
   std::uint64_t bytes() const;  ///< of all that it keeps
 
-  // The plan itself, for those who lay it on elsewhere (a GPU). All empty when nothing changes.
-  std::span<const Vec3f> offsets() const { return offsets_; }  ///< P: along normal, binormal, tangent
-  std::span<const float> reach() const { return reach_; }      ///< S: end of the strand / end of its curve
-  std::span<const float> widths() const { return widths_; }    ///< P factors; empty: widths stay
-  /// S: angle from the root face's frame, turned to the strand's first tangent, to its first normal.
-  std::span<const float> rootTurns() const { return rootTurns_; }
+  /// The plan itself, for those who lay it on elsewhere (a GPU); empty when nothing changes.
+  StrandStyle view() const { return {strandOffsets_, offsets_, reach_, widths_, rootTurns_}; }
 
  private:
   std::vector<std::uint64_t> strandOffsets_;

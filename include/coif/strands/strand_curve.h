@@ -8,7 +8,7 @@
 
 #include "coif/strands/frames.h"
 
-namespace coif::style {
+namespace coif {
 
 /// Uniform Catmull–Rom with pinned ends through `values` at a place in [0, n − 1]; exactly a value at a whole
 /// place. Beyond the ends: the end value. Type T: a vector or a number.
@@ -49,4 +49,4 @@ class StrandCurve {
   std::vector<double> arcs_;
 };
 
-}  // namespace coif::style
+}  // namespace coif

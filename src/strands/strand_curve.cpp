@@ -1,6 +1,6 @@
-#include "style/strand_curve.h"
+#include "coif/strands/strand_curve.h"
 
-namespace coif::style {
+namespace coif {
 
 void StrandCurve::load(std::span<const Vec3f> points, const Frame& root) {
   points_.clear();
@@ -45,4 +45,4 @@ double StrandCurve::placeOfArc(double arc) const {
   return double(after - 1) + (std::max(arc, 0.0) - arcs_[after - 1]) / step;
 }
 
-}  // namespace coif::style
+}  // namespace coif
