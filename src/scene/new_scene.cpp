@@ -25,10 +25,6 @@ Result<Scene> sceneOnHead(const std::filesystem::path& headFile, const PolygonMe
                         : head.metersPerUnit > 0 ? head.metersPerUnit
                         : cage.frame.height > 0  ? kHeadMeters / cage.frame.height
                                                  : 0.01;
-  if (!(scene.metersPerUnit >= 1e-12 && scene.metersPerUnit <= 1e12))  // what loadScene() takes
-    return makeError(ErrorCode::Degenerate,
-                     "the head's unit is not within 1e-12 to 1e12 metres; say it with --meters-per-unit", "",
-                     headFile.string());
   scene.upAxis = head.upAxis;
   scene.look.azimuthDeg = hairstyle.showFromDeg + frontAzimuthDeg(cage.frame, head.upAxis);
   scene.hairMesh = std::move(hairstyle.mesh);

@@ -332,8 +332,12 @@ Status saveScene(Scene& scene, const std::filesystem::path& path) {
                      "a scene cannot name this head: its name or folder is not UTF-8; rename it", "",
                      scene.headPath().string());
   saved.file = path;
+  const std::string text = sceneText(saved);
+  // What could not be opened again must not take the place of what can.
+  if (const auto again = parseScene(text, path); !again.ok())
+    return makeError(ErrorCode::InvalidArgument, again.error().message, again.error().place, path.string());
   COIF_ASSIGN(auto file, SafeFile::create(path));
-  file.write(sceneText(saved));
+  file.write(text);
   COIF_TRY(file.commit());
   scene = std::move(saved);
   return {};

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,27 @@ TEST(SceneFile, HeadPathStartsFromTheFileBehindALink) {
     EXPECT_EQ(std::filesystem::weakly_canonical(again->headPath()), head) << name;
   }
   std::filesystem::remove_all(folder);
+}
+
+TEST(SceneFile, WhatCouldNotBeOpenedReplacesNoFile) {
+  const auto path = std::filesystem::temp_directory_path() / "coif-scene-spoilt-test.coif";
+  const Scene good = test::sampleScene();
+  const std::pair<const char*, void (*)(Scene&)> faults[] = {
+      {"metersPerUnit", [](Scene& s) { s.metersPerUnit = std::nan(""); }},
+      {"strands.points", [](Scene& s) { s.strands.points = 1; }},
+      {"strands.width", [](Scene& s) { s.strands.width = -1; }},
+      {"dynamics.cell", [](Scene& s) { s.dynamics.cell = 0; }},
+      {"look.light.key", [](Scene& s) { s.look.light.key = HUGE_VAL; }}};
+  for (const auto& [place, spoil] : faults) {
+    Scene scene = good;
+    ASSERT_TRUE(saveScene(scene, path).ok());
+    spoil(scene);
+    const Status status = saveScene(scene, path);
+    ASSERT_FALSE(status.ok()) << place;
+    EXPECT_EQ(status.error().place, place);
+    EXPECT_TRUE(loadScene(path).ok()) << place;
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(SceneFile, RefusesAHeadThatTextCannotName) {
