@@ -200,18 +200,22 @@ Status render(const Arguments& all, Session& session) {
     scene.strands.tolerance = 0;  // strands that move have the same points on every frame
   Evaluation evaluation(all.evaluate.options());
   const Context context = session.context();
-  COIF_ASSIGN(const Subject subject, subjectOf(scene, arguments, evaluation, context));
-  std::optional<PreviewRenderer> preview;
-  if (!arguments.pathTraced()) {
-    COIF_ASSIGN(PreviewRenderer made, PreviewRenderer::create(subject, scene, arguments, context));
-    preview.emplace(std::move(made));
-  }
+  COIF_ASSIGN(Subject subject, subjectOf(scene, arguments, evaluation, context));
   const Box box = framed(subject.strands, *subject.mesh, scene.upAxis);
   const CameraAngles from = cameraAngles(arguments, scene);
   const auto cameraAt = [&](double turnDeg) {
     return frameBox(box, scene.upAxis, from.azimuthDeg + turnDeg, from.elevationDeg,
                     double(arguments.width()) / arguments.height());
   };
+  if (subject.ground && (cameraAt(0).eye - subject.ground->point).dot(subject.ground->normal) <= 0) {
+    subject.ground.reset();  // it would hide all else
+    session.say("  the ground is left out: the camera is below it");
+  }
+  std::optional<PreviewRenderer> preview;
+  if (!arguments.pathTraced()) {
+    COIF_ASSIGN(PreviewRenderer made, PreviewRenderer::create(subject, scene, arguments, context));
+    preview.emplace(std::move(made));
+  }
   const auto picture = [&](const Subject& seen, const Camera& camera, const std::string& path) {
     return preview ? preview->render(camera, path, context, session)
                    : tracePicture(seen, scene, arguments, camera, path, context, session);

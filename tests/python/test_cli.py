@@ -155,6 +155,14 @@ def test_a_turntable_is_as_many_pictures_and_uploads_the_hair_once(scenes, tmp_p
     assert any(s["state"] == "reused" for s in stages), stages
 
 
+def test_a_camera_below_the_ground_sees_the_head(scenes, tmp_path):
+    small = ["--size", "48x48", "--strands", 300, "--camera=30,-30"]
+    said = run("render", scenes / "bob.coif", "-o", tmp_path / "below.png", *small).stdout
+    assert "the ground is left out" in said
+    run("render", scenes / "bob.coif", "-o", tmp_path / "none.png", *small, "--no-ground")
+    assert (tmp_path / "below.png").read_bytes() == (tmp_path / "none.png").read_bytes()
+
+
 def test_path_tracing_states_its_error_and_more_samples_lower_it(scenes, tmp_path):
     errors = []
     for samples in (4, 64):
