@@ -69,6 +69,11 @@ Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, 
   if (head) subject.head = &head->mesh();
   if (head && !arguments.noGround && !arguments.transparent)
     subject.ground = groundUnder(*subject.head, scene.upAxis);
+  if (subject.ground && subject.strands) {  // hair longer than the bust ends above the ground, not in it
+    const int up = scene.upAxis == UpAxis::Y ? 1 : 2;
+    double& height = subject.ground->point[up];
+    for (const Vec3f& point : subject.strands->points) height = std::min(height, double(point[up]));
+  }
   return subject;
 }
 
