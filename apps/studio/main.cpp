@@ -6,6 +6,7 @@
 #include <iostream>
 #include <utility>
 
+#include "coif/scene/hairstyle.h"
 #include "studio.h"
 
 namespace {
@@ -26,7 +27,10 @@ int main(int argc, char** argv) {
   StudioOptions options;  // its clock starts here
   std::string size;       // else as in the last run
   app.add_option("file", options.open, "A .coif document, or a head: OBJ, PLY, OFF, STL, GLB, glTF or USD");
-  app.add_option("--style", options.style, "The hairstyle that a head is opened with; '' for bare roots");
+  std::vector<std::string> styles(coif::hairstyleNames().begin(), coif::hairstyleNames().end());
+  styles.push_back("");
+  app.add_option("--style", options.style, "The hairstyle that a head is opened with; '' for bare roots")
+      ->check(CLI::IsMember(styles));
   app.add_option("--size", size, "The window, WIDTHxHEIGHT");
   app.add_option("--trace", options.trace, "Write how long each part of a frame took, for chrome://tracing");
   app.add_option("--python-log", options.pythonLog, "Append each command that is done, as a line of Python");
@@ -35,7 +39,16 @@ int main(int argc, char** argv) {
   app.add_option("--script", options.script, "A Python script to run on the document");
   app.add_option("--channel", options.channel, "A socket to the Python process that opens the studio")
       ->group("");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {  // as the command says it
+    std::string sentence = error.what();
+    if (!sentence.ends_with('.')) sentence += '.';
+    std::cerr << "coif-studio: " << sentence << " Try 'coif-studio --help'.\n";
+    return 2;
+  }
   Window::Place place = Settings::load().window;
   if (!size.empty()) {
     place.maximised = false;

@@ -121,3 +121,13 @@ def test_is_one_sentence(folder, status, says, command):
     assert done.stderr.startswith("coif: ") and len(done.stderr.strip().splitlines()) == 1, done.stderr
     assert says in done.stderr and len(done.stderr) < 600
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize("arguments", [["--nope"], ["a.coif", "b.coif"], ["head.obj", "--style", "beehive"], ["--size", "0x0"]])
+def test_the_editor_refuses_in_one_sentence_too(arguments):
+    studio = COIF.with_name("coif-studio")
+    if not studio.exists():
+        pytest.skip("built without the editor")
+    done = subprocess.run([studio, *arguments], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.startswith("coif-studio: ") and len(done.stderr.strip().splitlines()) == 1, done.stderr
