@@ -44,14 +44,16 @@ void parallelFor(const Context& context, std::size_t count, std::size_t grain,
     return;
   }
   oneapi::tbb::task_arena arena(context.threads > 0 ? context.threads : oneapi::tbb::task_arena::automatic);
-  char out = 0, back = 0;
-  give(&out);
+  static char out;  // not of this call: a chunk takes it before it may look at anything of this call's
+  char back = 0;
   arena.execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    const auto handed = [&](std::size_t chunk) {
       take(&out);
       runChunk(chunk);
       give(&back);
-    });
+    };
+    give(&out);
+    oneapi::tbb::parallel_for(std::size_t{0}, chunks, handed);
   });
   take(&back);
 }

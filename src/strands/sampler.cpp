@@ -21,8 +21,10 @@ double fading(double u) {
 }
 
 // Wider vectors where the machine has them, chosen as the program is loaded; the same bits, as no sum is
-// reordered or fused (-ffp-contract=off).
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__ELF__)
+// reordered or fused (-ffp-contract=off). ThreadSanitizer's own code would run in the choice, before it is
+// set up.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__ELF__) && \
+    !defined(__SANITIZE_THREAD__)
 #define COIF_WIDEST __attribute__((target_clones("default", "avx2", "avx512f")))
 #else
 #define COIF_WIDEST
