@@ -6,6 +6,7 @@
 #include "coif/scalp/mesh_report.h"
 #include "coif/scene/scene.h"
 #include "command.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -97,7 +98,7 @@ Json meshInfo(const PolygonMesh& mesh, Session& session) {
 
 /// Strands and meshes share extensions: a file with strands is read as strands.
 Status info(const std::string& path, Session& session) {
-  if (std::filesystem::path(path).extension() == ".coif") {
+  if (extensionOf(path) == ".coif") {
     COIF_ASSIGN(const Scene scene, loadScene(path));
     session.finish(sceneInfo(scene, session));
     return {};

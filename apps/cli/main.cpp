@@ -39,6 +39,8 @@ int main(int argc, char** argv) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
     std::string sentence = error.what();
+    if (app.get_subcommands().empty() && !app.remaining().empty())
+      sentence = "'" + app.remaining().front() + "' is neither a command nor an option";
     if (!sentence.empty() && sentence.back() != '.') sentence += '.';
     std::cerr << "coif: " << sentence << " Try 'coif --help'.\n";
     return int(Exit::BadUsage);

@@ -13,6 +13,7 @@
 #include "render_frames.h"
 #include "render_options.h"
 #include "scene_options.h"
+#include "values.h"
 
 namespace coif::cli {
 
@@ -78,7 +79,7 @@ Result<Subject> subjectOf(const Scene& scene, const RenderArguments& arguments, 
 }
 
 Status write(const std::string& path, const Image& image, const FloatImage& linear) {
-  const bool exr = std::filesystem::path(path).extension() == ".exr";
+  const bool exr = extensionOf(path) == ".exr";
   COIF_ASSIGN(const auto bytes, exr ? encodeExr(linear) : encodePng(image));
   COIF_ASSIGN(auto file, SafeFile::create(path));
   file.write(bytes);

@@ -65,7 +65,7 @@ std::string checkLod(const std::string& text) {
              : "auto, off or a part of the strands in (0, 1] is wanted, not '" + text + "'";
 }
 std::string checkOutput(const std::string& text) {
-  const std::string extension = std::filesystem::path(text).extension();
+  const std::string extension = extensionOf(text);
   return extension == ".png" || extension == ".exr" ? ""
                                                     : "pictures are .png or .exr files, not '" + text + "'";
 }

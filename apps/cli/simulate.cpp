@@ -62,7 +62,7 @@ Status simulate(const SimulateArguments& arguments, Session& session) {
   if (!arguments.headMotion.empty()) {
     COIF_ASSIGN(what.motion.poses, readPoses(arguments.headMotion));
   }
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  const std::string extension = extensionOf(arguments.output);
   const bool cache = extension == ".coifcache";
   if (!cache && extension != ".usda" && extension != ".usdc" && extension != ".usd" && extension != ".abc") {
     return makeError(ErrorCode::Unsupported,

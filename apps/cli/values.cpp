@@ -1,5 +1,7 @@
 #include "values.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -48,10 +50,16 @@ CLI::Validator wholeNumber() {
 
 CLI::Validator sceneOut() {
   const auto check = [](std::string& text) {
-    const bool scene = std::filesystem::path(text).extension() == ".coif";
+    const bool scene = extensionOf(text) == ".coif";
     return scene ? std::string() : "scenes are .coif files, not '" + text + "'";
   };
   return CLI::Validator(check, "FILE");
+}
+
+std::string extensionOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
 }
 
 }  // namespace coif::cli

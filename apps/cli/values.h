@@ -14,4 +14,7 @@ CLI::Validator wholeNumber();
 /// A .coif file to write: other commands know a scene by that name.
 CLI::Validator sceneOut();
 
+/// ".coif" of "BOB.COIF": in small letters, as the writers take it.
+std::string extensionOf(const std::string& path);
+
 }  // namespace coif::cli

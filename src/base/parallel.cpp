@@ -1,5 +1,6 @@
 #include "coif/base/parallel.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -43,7 +44,11 @@ void parallelFor(const Context& context, std::size_t count, std::size_t grain,
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) runChunk(chunk);
     return;
   }
-  oneapi::tbb::task_arena arena(context.threads > 0 ? context.threads : oneapi::tbb::task_arena::automatic);
+  // Asked for more than there are, oneTBB says so on the error stream, and takes what there are.
+  const int threads = context.threads > 0
+                          ? std::min(context.threads, oneapi::tbb::info::default_concurrency())
+                          : oneapi::tbb::task_arena::automatic;
+  oneapi::tbb::task_arena arena(threads);
   static char out;  // not of this call: a chunk takes it before it may look at anything of this call's
   char back = 0;
   arena.execute([&] {

@@ -79,6 +79,7 @@ FAULTS = [  # status, what the sentence says, the command
     (1, "s.coif: the folder cannot be made", ["bench", "place", "-o", "s.coif"]),
     (1, "nowhere/x.coif: cannot write in folder", new(out="nowhere/x.coif")),
     (1, "nowhere/x.coif: cannot write in folder", ["drape", "s.coif", "-o", "nowhere/x.coif", "--seconds", "3600"]),
+    (2, "'bild' is neither a command nor an option", ["bild", "s.coif"]),
     # Numbers.
     *[(2, f"--tolerance: a number above 0, 1e+30 at most, is wanted, not '{v}'", BUILD + ["--tolerance", v])
       for v in ("nan", "inf", "-1", "0", "1e300", "1 2")],

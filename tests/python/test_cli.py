@@ -97,6 +97,18 @@ def test_same_bytes_for_any_number_of_threads(scenes, tmp_path):
     assert len({(tmp_path / f"{t}.hair").read_bytes() for t in (1, 2, 5)}) == 1
 
 
+def test_more_threads_than_cores_are_no_matter(scenes, tmp_path):
+    done = run("build", scenes / "pixie.coif", "-o", tmp_path / "a.hair", "--strands", 3000, "--threads", 1000)
+    assert done.stderr == ""
+
+
+def test_names_may_be_in_capitals(scenes, tmp_path):
+    run("style", scenes / "pixie.coif", "--add", "frizz", "-o", tmp_path / "A.COIF")
+    assert run_json("info", tmp_path / "A.COIF")["kind"] == "scene"
+    run("simulate", tmp_path / "A.COIF", "--frames", 2, "--strands", 20, "-o", tmp_path / "A.USDC")
+    assert (tmp_path / "A.USDC").read_bytes().startswith(b"PXR-USDC")
+
+
 def test_convert_round_trip(scenes, tmp_path):
     run("build", scenes / "long.coif", "-o", tmp_path / "a.hair", "--strands", 200, "--points", 12)
     run("convert", tmp_path / "a.hair", tmp_path / "b.usdc")
