@@ -1,5 +1,6 @@
 // What the light map costs beside the memory it has to move.
 #include <cmath>
+#include <cstring>
 
 #include "bench/visibility_experiments.h"
 #include "coif/base/parallel.h"
@@ -27,25 +28,23 @@ StrandSet prefix(const StrandSet& hair) {
   return out;
 }
 
-/// Memory to move: the grid is read and written, the points are read.
-struct Traffic {
-  std::vector<float> grid = std::vector<float>(std::size_t(1) << 21, 0.0f);
-  std::vector<Vec3f> points;
-  float seen = 0;  ///< so that reading is not left out
-
-  void move(const Context& context) {
-    parallelFor(context, grid.size(), std::size_t(1) << 17, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) grid[i] += 1;
-    });
-    constexpr std::size_t kChunk = std::size_t(1) << 13;
-    std::vector<Vec3f> sums(points.size() / kChunk + 1, Vec3f::Zero());
-    parallelFor(context, points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      Vec3f sum = Vec3f::Zero();
-      for (std::size_t i = begin; i < end; ++i) sum += points[i];
-      sums[begin / kChunk] = sum;
-    });
-    for (const Vec3f& sum : sums) seen += sum.x();
+/// Memory to move, each once in and once out: the grid, the segments' points and their widths.
+class Traffic {
+ public:
+  explicit Traffic(const StrandSet& strands) : points_(3 * strands.points.size()), widths_(strands.widths) {
+    std::memcpy(points_.data(), strands.points.data(), points_.size() * sizeof(float));
   }
+  void move(const Context& context) {
+    for (std::vector<float>* values : {&grid_, &points_, &widths_}) {
+      parallelFor(context, values->size(), std::size_t(1) << 17, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) (*values)[i] += 1;
+      });
+    }
+  }
+
+ private:
+  std::vector<float> grid_ = std::vector<float>(std::size_t(1) << 21, 0.0f);
+  std::vector<float> points_, widths_;
 };
 
 /// What lies between two pictures: other memory, four times what the nearest caches hold together.
@@ -102,14 +101,11 @@ void addLightMapFigures(const StrandSet& hair, const BenchOptions& options, Benc
   for (const Vec3f& p : strands.points) positions.push_back(p.cast<double>());
   const LightView view = distantLightView(Vec3(-0.55, 0.65, 0.62), bounds(positions), 128);
   const FragmentStream stream = require(FragmentStream::make(strands, view, {}, options.context));
-  Traffic traffic;
-  traffic.points = strands.points;
+  Traffic traffic(strands);
   Caches caches;
   LightDensityMap map = require(LightDensityMap::make(stream, {}, options.context));
   const Times far = timed(map, stream, traffic, &caches, options),
               near = timed(map, stream, traffic, nullptr, options);
-  if (!std::isfinite(traffic.seen))
-    throw BenchFault{makeError(ErrorCode::Degenerate, "a point is no number")};
   const Bar most = options.quick ? Bar::None : Bar::AtMost, least = options.quick ? Bar::None : Bar::AtLeast;
   const std::string what = "light map of 128\xc2\xb3 cells, 100 000 segments";
   report.figures.push_back(

@@ -5,10 +5,10 @@
 
 namespace coif::light {
 
-/// `cells` holds `layers` layers of `width` optical depths each, in the light's order from layer `first` on,
-/// wrapping. Each becomes T = exp(−Σ) over the layers up to it. `width` is a multiple of 16; 1e-6 off at
-/// most. The same bytes for any number of lanes (4, 8 or 16; the processor has to have them).
-void transmittanceByColumns(float* cells, std::size_t width, std::size_t layers, std::size_t first,
-                            int lanes);
+/// `depths` holds `layers` layers of `width` optical depths each, in the light's order from layer `first` on,
+/// wrapping. `out`, as large, becomes T = exp(−Σ) over the layers up to each, `depths` zero. `width` is a multiple
+/// of 16; 1e-6 off at most. The same bytes for any number of lanes (4, 8 or 16; the processor has to have them).
+void transmittanceByColumns(float* depths, float* out, std::size_t width, std::size_t layers,
+                            std::size_t first, int lanes);
 
 }  // namespace coif::light

@@ -1,6 +1,8 @@
 #include "coif/light/light_density_map.h"
 
 #include <limits>
+#include <mutex>
+#include <new>
 
 #include "coif/base/lanes.h"
 #include "coif/base/parallel.h"
@@ -9,15 +11,46 @@
 namespace coif {
 namespace {
 
-constexpr std::size_t kStrandsAChunk = 128;
 constexpr int kMostDoublings = 40;
+constexpr std::align_val_t kLine{64};  // of the caches: what is streamed to them
+
+using Depths = std::unique_ptr<float[]>;
 
 }  // namespace
+
+/// A slab's optical depths for every thread at work: all zero when nobody has them.
+class LightDensityMap::SpareDepths {
+ public:
+  Depths take(std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<float[]>(size);
+    Depths depths = std::move(free_.back());
+    free_.pop_back();
+    return depths;
+  }
+  void giveBack(Depths depths) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(depths));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Depths> free_;
+};
 
 LightDensityMap::LightDensityMap(const LightDensityOptions& options)
     : options_(options),
       deposit_(options.log2Size, GridDeposit::Length::AcrossLast),
-      values_(std::make_unique_for_overwrite<float[]>(cells())) {}
+      values_(static_cast<float*>(::operator new(cells() * sizeof(float), kLine))),
+      spare_(std::make_unique<SpareDepths>()) {}
+
+void LightDensityMap::Aligned::operator()(float* values) const {
+  ::operator delete(values, kLine);
+}
+
+LightDensityMap::LightDensityMap(LightDensityMap&&) noexcept = default;
+LightDensityMap& LightDensityMap::operator=(LightDensityMap&&) noexcept = default;
+LightDensityMap::~LightDensityMap() = default;
 
 // In cells; for a point light x and y are the map's, z runs evenly in 1 / depth.
 Vec3 LightDensityMap::cellsOf(const Vec3& world) const {
@@ -66,35 +99,43 @@ void LightDensityMap::fitCell(const FragmentStream& stream) {
 
 // Points in cells and what they weigh there: width / cell, so that weight × length across the light is
 // ℓ D |sin ψ| / ds².
-bool LightDensityMap::gather(const FragmentStream& stream, const Context& context) {
+void LightDensityMap::gather(const FragmentStream& stream, std::size_t begin, std::size_t end,
+                             GridPoint* out) const {
   const StrandSet& strands = stream.strands();
-  points_.resize(strands.points.size());
-  base_ = (low_ / cell_).array().floor();
-  parallelFor(context, strands.strandCount(), kStrandsAChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1];
-      if (!stream.usableStrand(s)) {
-        std::fill(points_.begin() + std::ptrdiff_t(first), points_.begin() + std::ptrdiff_t(last),
-                  GridPoint{0, 0, 0, -1});
-      } else if (view_.perspective) {
-        for (std::uint64_t p = first; p < last; ++p) points_[p] = seenFromPoint(stream, std::uint32_t(p));
-      } else {
-        gatherDistant(stream, first, last);
-      }
+  for (std::size_t s = begin; s < end; ++s) {
+    const std::uint64_t first = strands.offsets[s], last = strands.offsets[s + 1];
+    if (!stream.usableStrand(s)) {
+      std::fill_n(out, last - first, GridPoint{0, 0, 0, -1});
+    } else if (view_.perspective) {
+      for (std::uint64_t p = first; p < last; ++p) out[p - first] = seenFromPoint(stream, std::uint32_t(p));
+    } else {
+      gatherDistant(stream, first, last, out);
     }
-  });
-  return !context.cancelled();
+    out += last - first;
+  }
 }
 
-void LightDensityMap::gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last) {
+void LightDensityMap::gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last,
+                                    GridPoint* out) const {
+  using Four = Lanes<4>::Float;
   const double perCell = 1 / cell_;
-  const Vec3 x = perCell * alongRows(), y = perCell * acrossRows(), z = perCell * view_.forward;
-  for (std::uint64_t p = first; p < last; ++p) {
-    const Vec3 world = stream.strands().points[p].cast<double>();
+  // From a corner that floats can name, so that differences are as fine as the points themselves.
+  const Vec3f corner = (alongRows() * low_.x() + acrossRows() * low_.y() + view_.forward * low_.z()).cast<float>();
+  const Vec3 cells = cellsOf(corner.cast<double>());
+  const Four base = {float(cells.x()), float(cells.y()), float(cells.z()), 0};
+  Four axes[3];
+  for (int d = 0; d < 3; ++d) {
+    axes[d] = Four{float(alongRows()[d] * perCell), float(acrossRows()[d] * perCell),
+                   float(view_.forward[d] * perCell), 0};
+  }
+  const Vec3f* points = stream.strands().points.data();
+  for (std::uint64_t p = first; p < last; ++p, ++out) {
+    const float* world = points[p].data();
+    const Four at = (world[0] - corner[0]) * axes[0] + (world[1] - corner[1]) * axes[1] +
+                    (world[2] - corner[2]) * axes[2] + base;
+    storeLanes(&out->x, at);
     const auto point = std::uint32_t(p);
-    const double weight = stream.opacityAt(point) * std::max(0.0, stream.widthAt(point)) * perCell;
-    points_[p] = {float(x.dot(world) - base_.x()), float(y.dot(world) - base_.y()),
-                  float(z.dot(world) - base_.z()), float(weight)};
+    out->weight = float(stream.opacityAt(point) * std::max(0.0, stream.widthAt(point)) * perCell);
   }
 }
 
@@ -110,27 +151,35 @@ GridPoint LightDensityMap::seenFromPoint(const FragmentStream& stream, std::uint
   return {float(c.x()), float(c.y()), float(c.z()), float(weight)};
 }
 
-// Slabs [begin, end): hair into cells, cells into T by columns along the light, in place.
+// Slabs [begin, end): hair into cells that stay near the processor, cells into T by columns along the light.
 void LightDensityMap::accumulate(std::size_t begin, std::size_t end) {
-  const std::size_t n = std::size_t(1) << options_.log2Size;
+  const std::size_t n = std::size_t(1) << options_.log2Size, size = deposit_.slabCells();
   const int lanes = widestLanes();
+  Depths depths = spare_->take(size);
   for (std::size_t slab = begin; slab < end; ++slab) {
-    const std::span<float> cells(values_.get() + slab * deposit_.slabCells(), deposit_.slabCells());
+    const std::span passed(values_.get() + slab * size, size);
     if (!deposit_.reaches(int(slab))) {
-      std::ranges::fill(cells, 1.0f);
+      std::ranges::fill(passed, 1.0f);
       continue;
     }
-    deposit_.fill(int(slab), cells, lanes);
-    light::transmittanceByColumns(cells.data(), n * GridDeposit::kSlabRows, n,
+    deposit_.add(int(slab), {depths.get(), size}, lanes);
+    light::transmittanceByColumns(depths.get(), passed.data(), n * GridDeposit::kSlabRows, n,
                                   std::size_t(deposit_.first()[2]) & (n - 1), lanes);
   }
+  spare_->giveBack(std::move(depths));
 }
 
 Status LightDensityMap::update(const FragmentStream& stream, const Context& context) {
   view_ = stream.view();
   for (int doubling = 0; doubling <= kMostDoublings; ++doubling) {
-    if (!gather(stream, context)) break;
-    deposit_.bin(points_, stream.strands().offsets, context);
+    base_ = (low_ / cell_).array().floor();
+    deposit_.bin(
+        stream.strands().offsets,
+        [&](std::size_t begin, std::size_t end, std::span<GridPoint> out) {
+          gather(stream, begin, end, out.data());
+        },
+        context);
+    if (context.cancelled()) break;
     if (!deposit_.fits()) {
       if (!options_.grows || view_.perspective) {
         return makeError(ErrorCode::TooLarge,

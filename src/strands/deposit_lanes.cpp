@@ -1,8 +1,13 @@
 #include "strands/deposit_lanes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include "coif/base/lanes.h"
 
@@ -10,14 +15,16 @@ namespace coif {
 namespace {
 
 constexpr int kBatch = 16, kStage = 128;  // segments: walked together, prepared together
+constexpr int kQuad = 4;
 constexpr float kNever = 2;               // beyond the end of a segment, 1
 
 /// Segments in cells from the task's origin: where they begin and go, where they meet the next face along
 /// each axis and how far the faces lie apart, as fractions of the segment.
 struct Stage {
+  alignas(64) float at[3][kStage + kQuad], ends[kStage + kQuad];  // points and their weights
   alignas(64) float begin[3][kStage], delta[3][kStage], next[3][kStage], stride[3][kStage];
   alignas(64) float weight[kStage], growth[kStage];  // weight × length, half its change
-  alignas(64) int faces[kStage];
+  alignas(64) int faces[kStage], live[kStage];       // live: −1, or 0 where there is no segment
 };
 
 using Quad = Lanes<4>::Float;
@@ -34,54 +41,30 @@ using Quad = Lanes<4>::Float;
   storeLanes(w, Quad(__builtin_shufflevector(c, d, 2, 3, 6, 7)));
 }
 
-/// Runs, segment by segment.
-class Segments {
- public:
-  explicit Segments(std::span<const SegmentRun> runs) : runs_(runs) {}
-  /// The next ones' first points, as many as there are and fit.
-  int next(std::uint32_t (&out)[kStage]) {
-    int count = 0;
-    while (count < kStage && run_ < runs_.size()) {
-      const SegmentRun run = runs_[run_];
-      const std::uint32_t more = std::min(run.count - done_, std::uint32_t(kStage - count));
-      for (std::uint32_t k = 0; k < more; ++k) out[count + int(k)] = run.first + done_ + k;
-      count += int(more);
-      done_ += more;
-      if (done_ == run.count) ++run_, done_ = 0;
-    }
-    return count;
-  }
-
- private:
-  std::span<const SegmentRun> runs_;
-  std::size_t run_ = 0;
-  std::uint32_t done_ = 0;
-};
-
-[[gnu::always_inline]] inline int prepare(const DepositTask& task, const std::uint32_t (&segments)[kStage],
-                                          int count, Stage& s) {
+/// `count` segments from `points` on.
+[[gnu::always_inline]] inline int prepare(const DepositTask& task, const GridPoint* points, int count,
+                                          Stage& s) {
   const int padded = (count + kBatch - 1) / kBatch * kBatch;
-  for (int l = 0; l < count; l += 4) {  // beyond the last one it is repeated, to be overwritten below
-    Quad ends[2][4];
-    for (int q = 0; q < 4; ++q) {
-      const GridPoint* point = task.points.data() + segments[std::min(l + q, count - 1)];
-      loadLanes(ends[0][q], &point[0].x);
-      loadLanes(ends[1][q], &point[1].x);
-    }
-    transpose(ends[0], s.begin[0] + l, s.begin[1] + l, s.begin[2] + l, s.weight + l);
-    transpose(ends[1], s.delta[0] + l, s.delta[1] + l, s.delta[2] + l, s.growth + l);
+  for (int l = 0; l <= count; l += kQuad) {
+    Quad four[kQuad];
+    for (int q = 0; q < kQuad; ++q) loadLanes(four[q], &points[l + q].x);
+    transpose(four, s.at[0] + l, s.at[1] + l, s.at[2] + l, s.ends + l);
   }
   for (int l = count; l < padded; ++l) {
-    for (int d = 0; d < 3; ++d) s.begin[d][l] = s.delta[d][l] = task.origin[d] + 1;
-    s.weight[l] = s.growth[l] = 0;
+    for (int d = 0; d < 3; ++d) s.at[d][l] = s.at[d][l + 1] = task.origin[d] + 1;
+    s.ends[l] = s.ends[l + 1] = -0.0f;
   }
-  for (int l = 0; l < padded; ++l) s.faces[l] = 0;
+  for (int l = 0; l < padded; ++l) {
+    s.live[l] = ~(std::bit_cast<std::int32_t>(s.ends[l]) >> 31);
+    s.faces[l] = 0;
+  }
   for (int d = 0; d < 3; ++d) {
+    const float* at = s.at[d];
     float *begin = s.begin[d], *delta = s.delta[d], *next = s.next[d], *stride = s.stride[d];
     const float origin = task.origin[d];
     for (int l = 0; l < padded; ++l) {
-      const float a = begin[l] - origin, b = delta[l] - origin;
-      const int faces = int(b) - int(a);
+      const float a = at[l] - origin, b = at[l + 1] - origin;
+      const int faces = (int(b) - int(a)) & s.live[l];
       const float perDelta = 1 / (b - a);
       const float face = float(int(a) + (faces > 0));
       next[l] = faces != 0 ? (face - a) * perDelta : kNever;
@@ -93,24 +76,33 @@ class Segments {
   const float along = task.acrossLast ? 0 : 1;
   for (int l = 0; l < padded; ++l) {
     const float x = s.delta[0][l], y = s.delta[1][l], z = along * s.delta[2][l];
-    const float length = std::sqrt(x * x + y * y + z * z);
-    s.growth[l] = 0.5f * (s.growth[l] - s.weight[l]) * length;
-    s.weight[l] *= length;
+    const float length = s.live[l] != 0 ? std::sqrt(x * x + y * y + z * z) : 0.0f;
+    const float from = std::abs(s.ends[l]), to = std::abs(s.ends[l + 1]);
+    s.growth[l] = 0.5f * (to - from) * length;
+    s.weight[l] = from * length;
   }
   return padded;
 }
 
-/// One piece of each lane a step, up to the next face of any axis. The number of faces is known beforehand,
-/// so rounding can displace a crossing but never lose one.
+/// Pieces of a batch's segments and their cells, step by step, kBatch each.
+struct Pieces {
+  std::vector<int> cells;
+  std::vector<float> lengths;
+};
+
+/// Lanes [first, first + W) of a batch that begins at `batch`: one piece of each lane a step, up to the next face of
+/// any axis. The number of faces is known beforehand, so rounding can displace a crossing but never lose one.
 template <int W>
-[[gnu::always_inline]] inline void walk(const DepositTask& task, const Stage& s, int first,
-                                        std::vector<int>& cells, std::vector<float>& pieces) {
+[[gnu::always_inline]] inline void walk(const DepositTask& task, const Stage& s, int batch, int lane, int steps,
+                                        Pieces& out) {
   using Float = typename Lanes<W>::Float;
   using Int = typename Lanes<W>::Int;
   constexpr int kRows = GridDeposit::kSlabRows;
   const int log2 = task.log2Size, size = 1 << log2, mask = size - 1, layer = kRows << log2;
   const int columns =
       (mask * layer) | mask;  // an address without its row; what i carries lands in the row's bits
+  const int rows = mask << log2, inSlab = (kRows - 1) << log2, slab = task.rowBegin << log2;
+  const int first = batch + lane;
   Float next[3], stride[3], weight, growth;
   Int faces, cell[3], step[3];
   for (int d = 0; d < 3; ++d) {
@@ -120,60 +112,77 @@ template <int W>
     loadLanes(next[d], &s.next[d][first]);
     loadLanes(stride[d], &s.stride[d][first]);
     cell[d] = __builtin_convertvector(begin, Int) & mask;
-    const int one = d == 2 ? layer : 1,
-              back = d == 2 ? mask * layer : mask;  // −1 is n − 1 where addresses wrap
-    step[d] = delta < 0.0f ? Int{} + back : Int{} + one;
+    const int one = d == 2 ? layer : d == 1 ? size : 1;
+    step[d] = delta < 0.0f ? Int{} + mask * one : Int{} + one;  // −1 is n − 1 where addresses wrap
   }
   loadLanes(weight, &s.weight[first]);
   loadLanes(growth, &s.growth[first]);
   loadLanes(faces, &s.faces[first]);
-  const int steps = 1 + *std::max_element(s.faces + first, s.faces + first + W);
-  if (std::size_t(steps * W) > cells.size()) {
-    cells.resize(std::size_t(steps * W));
-    pieces.resize(cells.size());
-  }
-  Int column = cell[0] | (cell[2] * layer), row = cell[1];
+  Int column = cell[0] | (cell[2] * layer), row = cell[1] << log2;
   const Float zero = Float{}, end = zero + 1.0f;
   const Int none = Int{};
   Float from = zero;
-  for (int n = 0; n < steps; ++n) {
+  int* cells = out.cells.data() + lane;
+  float* lengths = out.lengths.data() + lane;
+  for (int n = 0; n < steps; ++n, cells += kBatch, lengths += kBatch) {
     Float to = next[0] < next[1] ? next[0] : next[1];
     to = to < next[2] ? to : next[2];
     to = n < faces ? to : end;
-    to = to < end ? to : end;
-    to = to > from ? to : from;
+    to = to < end ? to : end;  // and never before `from`: what lay there has moved on by its stride
     const Float piece = (weight + (from + to) * growth) * (to - from);
-    const Float inSlab = (row & ~(kRows - 1)) == task.rowBegin ? piece : zero;
-    storeLanes(&cells[std::size_t(n * W)], Int(column | ((row & (kRows - 1)) << log2)));
-    storeLanes(&pieces[std::size_t(n * W)], inSlab);
+    storeLanes(cells, Int(column | (row & inSlab)));
+    storeLanes(lengths, Float((row & ~inSlab) == slab ? piece : zero));
     const auto x = next[0] <= to, y = next[1] <= to, z = next[2] <= to;
     next[0] += x ? stride[0] : zero;
     next[1] += y ? stride[1] : zero;
     next[2] += z ? stride[2] : zero;
     column = (column + (x ? step[0] : none) + (z ? step[2] : none)) & columns;
-    row = (row + (y ? step[1] : none)) & mask;
+    row = (row + (y ? step[1] : none)) & rows;
     from = to;
   }
-  constexpr int kQuad = 4;  // the order of the sums is that of four lanes
-  for (int quad = 0; quad < W; quad += kQuad) {
-    const int* most = s.faces + first + quad;
-    const int own = 1 + std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
-    for (int at = quad; at < own * W; at += W) {
-      for (int l = at; l < at + kQuad; ++l) task.cells[cells[std::size_t(l)]] += pieces[std::size_t(l)];
-    }
-  }
 }
+
+void addPieces(float* to, const Pieces& pieces, int steps) {
+  for (int k = 0; k < steps * kBatch; ++k) to[pieces.cells[std::size_t(k)]] += pieces.lengths[std::size_t(k)];
+}
+
+#if defined(__x86_64__)
+/// The same without those of no length, of which there are many: other slabs' and ended segments'.
+COIF_TARGET_16_LANES void addPieces16(float* to, Pieces& pieces, int steps) {
+  int* const cells = pieces.cells.data();
+  float* const lengths = pieces.lengths.data();
+  int count = 0;  // what is kept moves forward, never beyond what is read
+  for (int n = 0; n < steps; ++n) {
+    const __m512i cell = _mm512_loadu_si512(cells + n * kBatch);
+    const __m512 length = _mm512_loadu_ps(lengths + n * kBatch);
+    const __mmask16 kept = _mm512_cmp_ps_mask(length, _mm512_setzero_ps(), _CMP_NEQ_OQ);
+    _mm512_storeu_si512(cells + count, _mm512_maskz_compress_epi32(kept, cell));
+    _mm512_storeu_ps(lengths + count, _mm512_maskz_compress_ps(kept, length));
+    count += std::popcount(unsigned(kept));
+  }
+  for (int k = 0; k < count; ++k) to[cells[k]] += lengths[k];
+}
+#endif
 
 template <int W>
 [[gnu::always_inline]] inline void deposit(const DepositTask& task) {
   Stage stage;
-  std::vector<int> cells;
-  std::vector<float> pieces;
-  Segments segments(task.runs);
-  std::uint32_t some[kStage];
-  while (const int count = segments.next(some)) {
-    const int padded = prepare(task, some, count, stage);
-    for (int at = 0; at < padded; at += W) walk<W>(task, stage, at, cells, pieces);
+  Pieces pieces;
+  for (std::size_t first = 0; first < task.points.size(); first += kStage) {
+    const int count = int(std::min(task.points.size() - first, std::size_t(kStage)));
+    const int padded = prepare(task, task.points.data() + first, count, stage);
+    for (int batch = 0; batch < padded; batch += kBatch) {
+      const int steps = 1 + *std::max_element(stage.faces + batch, stage.faces + batch + kBatch);
+      if (std::size_t(steps * kBatch) > pieces.cells.size()) {
+        pieces.cells.resize(std::size_t(steps * kBatch));
+        pieces.lengths.resize(pieces.cells.size());
+      }
+      for (int lane = 0; lane < kBatch; lane += W) walk<W>(task, stage, batch, lane, steps, pieces);
+#if defined(__x86_64__)
+      if constexpr (W == 16) addPieces16(task.cells, pieces, steps);
+#endif
+      if constexpr (W != 16) addPieces(task.cells, pieces, steps);
+    }
   }
 }
 

@@ -72,6 +72,16 @@ double hairVolume(const StrandSet& set) {
 struct CellHair {
   std::vector<GridPoint> points;
   std::vector<std::uint64_t> offsets{0};
+
+  void into(GridDeposit& deposit) const {
+    deposit.bin(
+        offsets,
+        [&](std::size_t begin, std::size_t end, std::span<GridPoint> out) {
+          std::copy(points.begin() + std::ptrdiff_t(offsets[begin]),
+                    points.begin() + std::ptrdiff_t(offsets[end]), out.begin());
+        },
+        {});
+  }
 };
 
 CellHair cellHair(std::size_t count, double reach) {
@@ -99,7 +109,7 @@ TEST(GridDeposit, EqualsClippingOneSegmentAfterTheOtherInDouble) {
   const CellHair hair = cellHair(700, 0);
   for (const auto length : {GridDeposit::Length::Whole, GridDeposit::Length::AcrossLast}) {
     GridDeposit deposit(kLog2, length);
-    deposit.bin(hair.points, hair.offsets, {});
+    hair.into(deposit);
     ASSERT_TRUE(deposit.fits());
     std::vector<double> expected(std::size_t(n * n * n), 0.0);
     const auto index = [&](long i, long j, long k) {
@@ -124,8 +134,8 @@ TEST(GridDeposit, EqualsClippingOneSegmentAfterTheOtherInDouble) {
     std::vector<float> found(expected.size());
     double sum = 0;
     for (int slab = 0; slab < deposit.slabCount(); ++slab) {
-      deposit.fill(slab,
-                   std::span(found).subspan(std::size_t(slab) * deposit.slabCells(), deposit.slabCells()));
+      deposit.add(slab,
+                  std::span(found).subspan(std::size_t(slab) * deposit.slabCells(), deposit.slabCells()));
     }
     for (const float v : found) sum += double(v);
     EXPECT_NEAR(sum / whole, 1, 1e-6);  // rounding of a few thousand floats, up and down
@@ -139,14 +149,16 @@ TEST(GridDeposit, EqualsClippingOneSegmentAfterTheOtherInDouble) {
 TEST(GridDeposit, SameBytesForAnyNumberOfLanesAndAgain) {
   const CellHair hair = cellHair(500, 0), other = cellHair(50, 10);
   GridDeposit deposit(6, GridDeposit::Length::AcrossLast);
-  deposit.bin(other.points, other.offsets, {});
-  deposit.bin(hair.points, hair.offsets, {});  // nothing of the first is left
+  other.into(deposit);
+  hair.into(deposit);  // nothing of the first is left
   std::vector<float> four(deposit.slabCells()), more(four.size());
   double sum = 0;
   for (int slab = 0; slab < deposit.slabCount(); ++slab) {
-    deposit.fill(slab, four, 4);
+    std::ranges::fill(four, 0.0f);
+    deposit.add(slab, four, 4);
     for (int lanes = 8; lanes <= widestLanes(); lanes *= 2) {
-      deposit.fill(slab, more, lanes);
+      std::ranges::fill(more, 0.0f);
+      deposit.add(slab, more, lanes);
       ASSERT_EQ(four, more) << lanes;
     }
     if (!deposit.reaches(slab)) {

@@ -32,8 +32,13 @@ class LightDensityMap {
   /// The same for strands that moved, in the same memory; the cell stays unless it has to grow.
   Status update(const FragmentStream& stream, const Context& context = {});
 
+  LightDensityMap(LightDensityMap&&) noexcept;
+  LightDensityMap& operator=(LightDensityMap&&) noexcept;
+  ~LightDensityMap();
+
   double transmittance(const Vec3& world) const;
   double cell() const { return cell_; }
+  /// Of the grid; a slab's depths for every thread that fills it, 1/16 of a grid of 128³, come on top.
   std::size_t bytes() const { return cells() * sizeof(float); }
   std::size_t droppedStrands() const { return dropped_; }
 
@@ -43,8 +48,9 @@ class LightDensityMap {
   const Vec3& alongRows() const { return rowsAlongRight_ ? view_.right : view_.up; }
   const Vec3& acrossRows() const { return rowsAlongRight_ ? view_.up : view_.right; }
   Vec3 cellsOf(const Vec3& world) const;
-  bool gather(const FragmentStream& stream, const Context& context);
-  void gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last);
+  void gather(const FragmentStream& stream, std::size_t begin, std::size_t end, GridPoint* out) const;
+  void gatherDistant(const FragmentStream& stream, std::uint64_t first, std::uint64_t last,
+                     GridPoint* out) const;
   GridPoint seenFromPoint(const FragmentStream& stream, std::uint32_t point) const;
   void fitCell(const FragmentStream& stream);
   void accumulate(std::size_t begin, std::size_t end);
@@ -57,9 +63,13 @@ class LightDensityMap {
   Vec3 low_ = Vec3::Zero();      ///< corner of the hair's box in the light's frame when the map was made
   Vec3 base_ = Vec3::Zero();  ///< whole cells, taken off so that floats stay fine far from the scene's origin
   double inverseNear_ = 1, inverseFar_ = 0;  ///< of a point light's depth
-  std::vector<GridPoint> points_;
   GridDeposit deposit_;
-  std::unique_ptr<float[]> values_;  ///< T on the exit faces; slab by slab, GridDeposit::cellInSlab
+  struct Aligned {
+    void operator()(float* values) const;
+  };
+  std::unique_ptr<float[], Aligned> values_;  ///< T on the exit faces; slab by slab, GridDeposit::cellInSlab
+  class SpareDepths;
+  std::unique_ptr<SpareDepths> spare_;
   std::size_t dropped_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,11 +47,6 @@ struct GridPoint {
   float x = 0, y = 0, z = 0, weight = 0;
 };
 
-/// Segments of a strand that follow each other, by their first points.
-struct SegmentRun {
-  std::uint32_t first = 0, count = 0;
-};
-
 /// Clips segments exactly at the cells' faces and adds weight × length to every cell they pass; by slabs of
 /// rows that threads can fill apart from each other. Weight is linear along a segment; length is measured
 /// along all axes, or across the last one ("along the light") only. The sum over all cells is Σ weight ×
@@ -60,10 +56,13 @@ class GridDeposit {
   static constexpr int kSlabRows = 8;
   enum class Length { Whole, AcrossLast };
 
+  /// Writes the points of strands [begin, end), whose weights are numbers; called from several threads.
+  using Source = std::function<void(std::size_t begin, std::size_t end, std::span<GridPoint> out)>;
+
   GridDeposit(int log2Size, Length length);
-  /// Takes segments; `points` and `offsets` as in StrandSet, the points to outlive the last fill(). May be
-  /// called again, in the same memory.
-  void bin(std::span<const GridPoint> points, std::span<const std::uint64_t> offsets, const Context& context);
+  /// Takes segments; `offsets` as in StrandSet. Every strand's points are asked for once and kept by slabs. May
+  /// be called again, in the same memory.
+  void bin(std::span<const std::uint64_t> offsets, const Source& source, const Context& context);
 
   /// Low corner of the cells that hair is in, less one guard cell; zero without hair.
   const std::array<long, 3>& first() const { return first_; }
@@ -79,17 +78,22 @@ class GridDeposit {
   }
   /// Whether there may be hair in a slab.
   bool reaches(int slab) const;
-  /// All of a slab's cells. `lanes` (4, 8, 16; 0: as many as the processor has) changes no byte. Requires
-  /// fits().
-  void fill(int slab, std::span<float> cells, int lanes = 0) const;
+  /// Adds a slab's hair to its cells. `lanes` (4, 8, 16; 0: as many as the processor has) changes no byte.
+  /// Requires fits().
+  void add(int slab, std::span<float> cells, int lanes = 0) const;
 
  private:
   int log2Size_ = 7;
   Length length_ = Length::Whole;
   std::array<long, 3> first_{0, 0, 0};
   bool fits_ = true;
-  std::span<const GridPoint> points_;
-  std::vector<std::vector<std::vector<SegmentRun>>> bins_;  ///< chunk, slab: those that reach it, in order
+  /// Points of some strands, slab by slab and in order within one; a few more than are there may be read.
+  struct Chunk {
+    std::vector<GridPoint> points;
+    std::vector<std::uint32_t> begins;  ///< of the slabs' points, and an end
+    std::span<const GridPoint> in(int slab) const;
+  };
+  std::vector<Chunk> chunks_;
 };
 
 struct DensityReport {
