@@ -14,6 +14,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 shadowInfo;          // 1 = filtered look-ups, depth range (world), texel (world), bias (world)
   vec4 hairColor;           // w = 1: the strands carry colours
   vec4 headColor;
+  vec4 hairPasses;          // RGB: the part of what meets a hair that goes on; 0 where that is not asked for
   vec4 backgroundTop;
   vec4 backgroundBottom;
 };

@@ -5,8 +5,8 @@
 layout(binding = 8) uniform sampler2D surfaceShadow;   // surface_shadow.comp
 #endif
 struct SurfaceLight {
-  vec3 transmitted;   // of key, fill, rim
-  float sky;          // open part
+  vec3 transmitted[3];   // of key, fill, rim
+  vec3 sky;              // open part
 };
 
 float keyThroughHair(vec3 p) {
@@ -20,9 +20,14 @@ float keyThroughHair(vec3 p) {
 #endif
 }
 
+// Each hair on the way stops what does not go on through it, as in strands (fibre_tables.glsl): T_f = T^(1 − ā_f).
+vec3 withScattered(float transmitted) { return pow(vec3(max(transmitted, 1e-6)), 1.0 - hairPasses.rgb); }
+
 SurfaceLight lightOn(vec3 p, vec3 n) {
   vec4 hair = volumeAt(p + n * volumeLo.w);
   // A surface r texels away is at most r sin θ texels, along its normal, nearer to the light.
   vec3 above = p + n * (2.5 * shadowInfo.z);
-  return SurfaceLight(vec3(keyPastHeadSmoothly(above) * keyThroughHair(above), exp(-0.8 * hair.y), exp(-0.8 * hair.z)), hair.w);
+  return SurfaceLight(vec3[](keyPastHeadSmoothly(above) * withScattered(keyThroughHair(above)),
+                             withScattered(exp(-0.8 * hair.y)), withScattered(exp(-0.8 * hair.z))),
+                      withScattered(hair.w));
 }

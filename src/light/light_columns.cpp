@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kBlock = 16;           // columns that are looked at together
 constexpr std::size_t kStrip = 64 * kBlock;  // columns whose sums stay in the nearest cache
 
-// exp(−x), x >= 0: two to the nearest whole number, a minimax polynomial for the rest, 1 at 0 and 1.1e-7 off at
-// most; below 2⁻¹²⁶ it stays there. Beside kWhole a float has no fraction, and its last bits are the whole number.
+// exp(−x), x >= 0: two to the nearest whole number, a minimax polynomial for the rest, 1 at 0 and 1.1e-7 off
+// at most; below 2⁻¹²⁶ it stays there. Beside kWhole a float has no fraction, and its last bits are the whole
+// number.
 template <class Float, class Int>
 [[gnu::always_inline]] inline void expOfMinus(const Float& x, Float& out) {
   constexpr float kWhole = 0x1.8p23f;

@@ -120,7 +120,8 @@ void LightDensityMap::gatherDistant(const FragmentStream& stream, std::uint64_t 
   using Four = Lanes<4>::Float;
   const double perCell = 1 / cell_;
   // From a corner that floats can name, so that differences are as fine as the points themselves.
-  const Vec3f corner = (alongRows() * low_.x() + acrossRows() * low_.y() + view_.forward * low_.z()).cast<float>();
+  const Vec3f corner =
+      (alongRows() * low_.x() + acrossRows() * low_.y() + view_.forward * low_.z()).cast<float>();
   const Vec3 cells = cellsOf(corner.cast<double>());
   const Four base = {float(cells.x()), float(cells.y()), float(cells.z()), 0};
   Four axes[3];

@@ -72,6 +72,8 @@ FibreTables::FibreTables(const FibreParameters& fibre) : fibre_(fibre) {
   const Vec3 a = scattering.parameters().absorption;
   grey_ = a.x() == a.y() && a.y() == a.z();
   mostForward_ = double(*std::ranges::max_element(tables.forwardAttenuation));
+  const auto across = 3 * std::size_t(tables.inclinations / 2);
+  for (int c = 0; c < 3; ++c) forwardAcross_[c] = float(tables.forwardAttenuation[across + std::size_t(c)]);
 
   azimuthal_ = floatTexture(GL_TEXTURE_2D_ARRAY, tables.azimuths, tables.azimuthInclinations, 8);
   inclination_ = floatTexture(GL_TEXTURE_2D, tables.inclinations, 6, 1);

@@ -85,6 +85,7 @@ FrameData makeFrame(const View& view, const Lights& lights, const PreviewOptions
   frame.groundColor = vec4(lights.groundColor);
   frame.hairColor = vec4(options.hairColor);
   frame.headColor = vec4(options.headColor);
+  frame.hairPasses.setZero();
   frame.backgroundTop = vec4(options.backgroundTop);
   frame.backgroundBottom = vec4(options.backgroundBottom);
   return frame;

@@ -19,9 +19,9 @@ struct FrameData {
   Vec4f skyColor, groundColor;
   Vec4f volumeLo, volumeScale;
   Vec4f shadowInfo;
-  Vec4f hairColor, headColor, backgroundTop, backgroundBottom;
+  Vec4f hairColor, headColor, hairPasses, backgroundTop, backgroundBottom;
 };
-static_assert(sizeof(FrameData) == 16 * (4 + 4 + 6 + 2 + 2 + 1 + 4), "as std140 lays it out");
+static_assert(sizeof(FrameData) == 16 * (4 + 4 + 6 + 2 + 2 + 1 + 5), "as std140 lays it out");
 
 /// The camera's orthonormal frame and what a pixel measures.
 struct View {

@@ -33,6 +33,7 @@ void PreviewSession::Impl::useShading(const PreviewOptions& options, bool slices
   const bool asked = options.shading == PreviewShading::DualScattering;
   const bool multiple = asked && !(options.leaveOut && fibre->mostForward() < kDark);
   if (asked && !multiple) stage.notes.push_back("dark hair: no multiple scattering");
+  hairPasses = multiple ? fibre->forwardAcross() : Vec3f(Vec3f::Zero());
   const bool grey = tables && options.leaveOut && fibre->grey();
   if (grey) stage.notes.push_back("grey hair: one channel");
   shadows->bindForHair();
@@ -137,6 +138,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
     frame.clipFromWorld = clipFromWorld(view, subframeJitter(k, options.subframes));
     frame.viewport.z() = float(k);
+    frame.hairPasses.head<3>() = hairPasses;
     write(frameBuffer, &frame, sizeof frame);
     COIF_TRY(drawSubframe(options, view, k == 0));
     context.report("picture", double(k + 1) / options.subframes);

@@ -37,6 +37,7 @@ struct PreviewSession::Impl {
   VisibilityOptions shadowOptions;
   DetailOptions shadowDetail;  ///< of the strands in the maps
   std::unique_ptr<FibreTables> fibre;
+  Vec3f hairPasses = Vec3f::Zero();  ///< to surfaces: FrameData
   std::unique_ptr<EyePass> eye;
   std::unique_ptr<SlicedHair> sliced;       ///< HalfAngleSlices, of this picture
   double eyeLayerSize = 0;                  ///< of DepthLayers

@@ -86,7 +86,7 @@ class Stretches {
   static_assert(std::endian::native == std::endian::little);
 
   int slabs_;
-  std::unique_ptr<int[]> slabOf_;             ///< not wrapped
+  std::unique_ptr<int[]> slabOf_;            ///< not wrapped
   std::unique_ptr<std::uint8_t[]> changes_;  ///< 1: the next point lies in another
   std::vector<Run> runs_;
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBatch = 16, kStage = 128;  // segments: walked together, prepared together
 constexpr int kQuad = 4;
-constexpr float kNever = 2;               // beyond the end of a segment, 1
+constexpr float kNever = 2;  // beyond the end of a segment, 1
 
 /// Segments in cells from the task's origin: where they begin and go, where they meet the next face along
 /// each axis and how far the faces lie apart, as fractions of the segment.
@@ -90,11 +90,12 @@ struct Pieces {
   std::vector<float> lengths;
 };
 
-/// Lanes [first, first + W) of a batch that begins at `batch`: one piece of each lane a step, up to the next face of
-/// any axis. The number of faces is known beforehand, so rounding can displace a crossing but never lose one.
+/// Lanes [first, first + W) of a batch that begins at `batch`: one piece of each lane a step, up to the next
+/// face of any axis. The number of faces is known beforehand, so rounding can displace a crossing but never
+/// lose one.
 template <int W>
-[[gnu::always_inline]] inline void walk(const DepositTask& task, const Stage& s, int batch, int lane, int steps,
-                                        Pieces& out) {
+[[gnu::always_inline]] inline void walk(const DepositTask& task, const Stage& s, int batch, int lane,
+                                        int steps, Pieces& out) {
   using Float = typename Lanes<W>::Float;
   using Int = typename Lanes<W>::Int;
   constexpr int kRows = GridDeposit::kSlabRows;

@@ -74,13 +74,12 @@ struct CellHair {
   std::vector<std::uint64_t> offsets{0};
 
   void into(GridDeposit& deposit) const {
-    deposit.bin(
-        offsets,
-        [&](std::size_t begin, std::size_t end, std::span<GridPoint> out) {
-          std::copy(points.begin() + std::ptrdiff_t(offsets[begin]),
-                    points.begin() + std::ptrdiff_t(offsets[end]), out.begin());
-        },
-        {});
+    deposit.bin(offsets,
+                [&](std::size_t begin, std::size_t end, std::span<GridPoint> out) {
+                  std::copy(points.begin() + std::ptrdiff_t(offsets[begin]),
+                            points.begin() + std::ptrdiff_t(offsets[end]), out.begin());
+                },
+                {});
   }
 };
 

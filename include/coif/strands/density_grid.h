@@ -60,8 +60,8 @@ class GridDeposit {
   using Source = std::function<void(std::size_t begin, std::size_t end, std::span<GridPoint> out)>;
 
   GridDeposit(int log2Size, Length length);
-  /// Takes segments; `offsets` as in StrandSet. Every strand's points are asked for once and kept by slabs. May
-  /// be called again, in the same memory.
+  /// Takes segments; `offsets` as in StrandSet. Every strand's points are asked for once and kept by slabs.
+  /// May be called again, in the same memory.
   void bin(std::span<const std::uint64_t> offsets, const Source& source, const Context& context);
 
   /// Low corner of the cells that hair is in, less one guard cell; zero without hair.
