@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "coif/light/dual_scattering.h"
 #include "preview/preview_fixture.h"
 
 namespace coif {
@@ -66,6 +67,47 @@ TEST_F(Grounds, LieInTheHeadsShadowWhereTheLightSaysSo) {
   EXPECT_NEAR(at(-0.5, 0), 0, 1e-3) << "the plate's shadow falls as far aside as it is high";
   EXPECT_NEAR(at(-0.5, 0.5), kLit, 0.1 * kLit);
   EXPECT_NEAR(at(0.6, 0), kLit, 0.1 * kLit);
+}
+
+// A sheet of hair between light and ground: T_f = T^(1 − ā_f), with light's own ā_f, so that the logarithms of two
+// colours' shadows are to each other as what the hairs stop.
+TEST_F(Grounds, GetTheLightThatGoesOnThroughHair) {
+  constexpr int kHairs = 3000;
+  StrandSet hair;
+  for (int i = 0; i < kHairs; ++i) {
+    const double x = -0.6 + 1.2 * std::fmod((i + 0.5) * 0.61803398875, 1.0), y = 0.5 + 0.05 * i / kHairs;
+    for (const double z : {-0.6, 0.6}) {
+      hair.points.emplace_back(float(x), float(y), float(z));
+      hair.widths.push_back(float(1.2 * std::sqrt(0.5) / kHairs));  // optical depth 1, as the light sees it
+    }
+    hair.offsets.push_back(hair.points.size());
+  }
+  PreviewScene under = scene();
+  under.lights.key.color = Vec3f::Constant(5);
+  under.strands = &hair;
+  const auto stopped = [&](double absorption, PreviewShading shading) {
+    PreviewOptions options = small(128, 1);
+    options.shading = shading;
+    options.useAbsorption = true;
+    options.fibre.absorption = Vec3::Constant(absorption);
+    const Image image = render(under, options).image;
+    double mean = 0;  // around where the sheet's shadow is deepest, beside the sheet itself
+    for (int y = 58; y < 70; ++y) {
+      for (int x = 88; x < 94; ++x) mean += linearAt(image, x, y) / 72;
+    }
+    return -std::log(mean / (25 * kLit));
+  };
+  const auto passes = [](double absorption) {
+    FibreParameters fibre;
+    fibre.absorption = Vec3::Constant(absorption);
+    return DualScattering(FibreScattering(fibre)).means(0, 0).attenuationForward;
+  };
+  const double single = stopped(0.1, PreviewShading::Marschner);
+  EXPECT_NEAR(single, 1, 0.15) << "unscattered light alone; the map's hairs are few and wide";
+  for (const double absorption : {0.0, 0.1, 1.0}) {
+    EXPECT_NEAR(stopped(absorption, PreviewShading::DualScattering) / single, 1 - passes(absorption), 0.02)
+        << absorption;
+  }
 }
 
 TEST_F(Grounds, RefuseWhatIsNone) {
