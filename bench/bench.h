@@ -26,6 +26,9 @@ struct BenchOptions {
   /// Seconds after which a bench of many rows (gpu) begins no further one; it measures what matters most
   /// first, and says what it left out. 0: no bound.
   double budgetSeconds = 200;
+  /// picture: where traced pictures are kept for the next time, and taken from; empty: nowhere.
+  std::filesystem::path truthFolder = {};
+  int truthSamples = 0;  ///< picture: a pixel and half of the truth; 0: as many as the bench thinks best
   /// Told of each figure as soon as it is measured (gpu), so that a run that is cut off keeps them.
   std::function<void(const BenchFigure&)> onFigure = {};
   Context context;

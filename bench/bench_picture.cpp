@@ -3,6 +3,7 @@
 #include "bench/bench.h"
 #include "bench/bench_text.h"
 #include "bench/scattering_scene.h"
+#include "coif/io/safe_file.h"
 #include "coif/light/hair_color.h"
 #include "coif/light/image_metrics.h"
 #include "coif/light/path_tracer.h"
@@ -17,7 +18,9 @@ struct Settings {
 };
 
 Settings settingsOf(const BenchOptions& options) {
-  return options.quick ? Settings{4000, 64, 16, 48, 8} : Settings{100000, 512, 12, 256, 40};
+  Settings settings = options.quick ? Settings{4000, 64, 16, 48, 8} : Settings{100000, 512, 12, 256, 40};
+  if (options.truthSamples > 0) settings.samples = settings.smallSamples = options.truthSamples;
+  return settings;
 }
 
 ScatteringScene pictureScene(std::size_t hairs, const BenchOptions& options) {
@@ -62,15 +65,39 @@ PathTracePicture traced(const ScatteringScene& scene, const FibreParameters& fib
   return require(pathTrace(world, how, options.context));
 }
 
+/// The traced picture, from the folder of truths if it is there, kept there if there is a folder.
+FloatImage tracedOnce(const ScatteringScene& scene, HairColor color, int size, int samples, std::uint64_t seed,
+                      const BenchOptions& options) {
+  const auto trace = [&] { return traced(scene, fibreOf(color), size, samples, seed, options).image; };
+  if (options.truthFolder.empty()) return trace();
+  const std::string name = std::string("bob-") + nameOf(color) + "-" +
+                           std::to_string(scene.strands.strandCount()) + "-hairs-" + std::to_string(size) +
+                           "-pixels-" + std::to_string(samples) + "-samples-seed-" + std::to_string(seed) + ".exr";
+  const std::filesystem::path path = options.truthFolder / name;
+  std::error_code failed;
+  if (std::filesystem::exists(path, failed)) {
+    FloatImage kept = require(decodeExr(require(readFile(path))));
+    if (kept.width == size && kept.height == size) return kept;
+    throw BenchFault{makeError(ErrorCode::Malformed, path.string() + " is no truth of this bench: it is " +
+                                                         std::to_string(kept.width) + " pixels wide")};
+  }
+  FloatImage image = trace();
+  std::filesystem::create_directories(options.truthFolder, failed);  // said when the file is made
+  SafeFile file = require(SafeFile::create(path));
+  file.write(require(encodeExr(image, ExrPrecision::Float)));
+  if (const Status status = file.commit(); !status.ok()) throw BenchFault{status.error()};
+  return image;
+}
+
 /// The mean of two runs, and how far they are from each other: twice what the mean is from the truth, or less.
 struct Truth {
   FloatImage picture;
   double noise = 0;
 };
-Truth truthOf(const ScatteringScene& scene, const FibreParameters& fibre, int size, int samples,
+Truth truthOf(const ScatteringScene& scene, HairColor color, int size, int samples,
               const BenchOptions& options) {
-  FloatImage a = traced(scene, fibre, size, samples, options.seed, options).image;
-  const FloatImage b = traced(scene, fibre, size, samples, options.seed + 1, options).image;
+  FloatImage a = tracedOnce(scene, color, size, samples, options.seed, options);
+  const FloatImage b = tracedOnce(scene, color, size, samples, options.seed + 1, options);
   Truth truth;
   truth.noise = require(flip(seen(a), seen(b), 67, options.context)).mean;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) a.rgba[i] = 0.5f * (a.rgba[i] + b.rgba[i]);
@@ -118,7 +145,7 @@ BenchSample sampleOf(const std::string& method, const std::string& choice, const
 void picturePlot(Bob& bob, const ScatteringScene& scene, const Settings& settings, const BenchOptions& options,
                  BenchReport& report) {
   const FibreParameters fibre = fibreOf(HairColor::Brown);
-  const Truth truth = truthOf(scene, fibre, settings.size, settings.samples, options);
+  const Truth truth = truthOf(scene, HairColor::Brown, settings.size, settings.samples, options);
   BenchPlot plot;
   plot.name = "picture";
   plot.title = "A bob, from strands in memory to the picture's bytes";
@@ -186,7 +213,7 @@ BenchReport benchPicture(const BenchOptions& options) {
   for (const HairColor color : {HairColor::Black, HairColor::Red, HairColor::Blond}) {
     if (options.quick && color != HairColor::Blond) continue;
     const FibreParameters fibre = fibreOf(color);
-    const Truth truth = truthOf(scene, fibre, settings.smallSize, settings.smallSamples, options);
+    const Truth truth = truthOf(scene, color, settings.smallSize, settings.smallSamples, options);
     const Bob::Measured measured = bob.measure(pictureOptions(settings.smallSize, fibre), truth.picture);
     report.figures.push_back({std::string(nameOf(color)) + ": FLIP of the default picture", measured.error, "",
                               options.quick ? Bar::None : Bar::AtMost, 0.1});

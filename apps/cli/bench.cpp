@@ -15,6 +15,8 @@ namespace {
 
 struct BenchArguments {
   std::string name, folder;
+  std::string truth;
+  int truthSamples = 0;
   bool quick = false;
   double budget = BenchOptions{}.budgetSeconds;
   std::uint64_t seed = 1;
@@ -25,6 +27,8 @@ Status bench(const BenchArguments& arguments, Session& session) {
   options.quick = arguments.quick;
   options.seed = arguments.seed;
   options.budgetSeconds = arguments.budget;
+  options.truthFolder = arguments.truth;
+  options.truthSamples = arguments.truthSamples;
   options.context = session.context();
   std::ofstream rows;
   if (!arguments.folder.empty()) {
@@ -84,6 +88,11 @@ void addBench(CLI::App& app, Session& session) {
       ->add_option("--budget", arguments->budget,
                    "gpu: seconds after which no further row is begun, 0 for no bound")
       ->check(number(0, 1e6));
+  command->add_option("--truth", arguments->truth,
+                      "picture: folder where path-traced pictures are kept, and taken from");
+  command->add_option("--truth-samples", arguments->truthSamples,
+                      "picture: samples a pixel of each half of the truth")
+      ->check(CLI::Range(2, 1 << 20));
   command->add_flag("--quick", arguments->quick, "Fewer sizes, a few seconds");
   command->callback([arguments, &session] {
     if (const Status status = bench(*arguments, session); !status.ok()) session.fail(status.error());
