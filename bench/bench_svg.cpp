@@ -13,10 +13,11 @@ namespace {
 
 constexpr double kWidth = 760, kHeight = 460;
 constexpr double kLeft = 78, kRight = 560, kTop = 52, kBottom = 402;
-constexpr double kLegendLine = 22;
+constexpr double kLegend = kRight + 38, kLegendLine = 22;
+constexpr double kLetter = 7.5;  // more than any 12 px sans-serif takes of a letter in the mean
 // Okabe and Ito's colours: told apart by colour-blind readers too; shapes repeat the distinction.
-constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                    "#56b4e9", "#e69f00", "#444444", "#882255", "#117733"};
+constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9",
+                                    "#e69f00", "#444444", "#882255", "#117733"};
 // An error of exactly 0 has no place on a logarithmic axis; it is drawn here, at double's own precision.
 constexpr double kErrorFloor = 1e-17;
 
@@ -151,12 +152,14 @@ std::string grid(const BenchPlot& plot, const Axis& x, const Axis& y) {
 std::string benchSvg(const BenchPlot& plot) {
   Axis x, y;
   fit(plot, x, y);
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " +
+  const std::vector<std::string> methods = methodsOf(plot);
+  double width = kWidth;
+  for (const std::string& name : methods) width = std::max(width, kLegend + kLetter * double(name.size()));
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(width) + " " +
                     number(kHeight) + "\" font-family=\"system-ui, Helvetica, Arial, sans-serif\">\n";
   out += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   out += text(kLeft, 28, "font-size=\"15\" font-weight=\"600\" fill=\"#222\"", escapeXml(plot.title));
   out += grid(plot, x, y);
-  const std::vector<std::string> methods = methodsOf(plot);
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const std::string colour = kColours[m % std::size(kColours)];
     std::string path, markers;
@@ -175,7 +178,7 @@ std::string benchSvg(const BenchPlot& plot) {
         "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.8\"/>\n" + markers;
     const double row = kTop + 10 + kLegendLine * double(m);
     out += marker(m, kRight + 24, row, colour, "") +
-           text(kRight + 38, row + 4, "font-size=\"12\" fill=\"#333\"", escapeXml(methods[m]));
+           text(kLegend, row + 4, "font-size=\"12\" fill=\"#333\"", escapeXml(methods[m]));
   }
   return out + "</svg>\n";
 }

@@ -62,6 +62,11 @@ TEST(Bench, SvgShowsEverySampleInsideTheFrame) {
   EXPECT_NE(svg.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_NE(svg.find("viewBox=\"0 0 760.0"), std::string::npos);
+  BenchPlot wordy = samplePlot();
+  for (BenchSample& s : wordy.samples) s.method = std::string(60, 'w');
+  EXPECT_NE(benchSvg(wordy).find("viewBox=\"0 0 1048.0"),
+            std::string::npos);  // 598 + 60 · 7.5: the legend is whole
   for (std::size_t at = svg.find("<circle cx=\""); at != std::string::npos;
        at = svg.find("<circle cx=\"", at + 1)) {
     const double x = std::stod(svg.substr(at + 12));
