@@ -191,7 +191,9 @@ BenchSample measure(const Case& c, const Setting& s, const Setting& moved, const
   sample.seconds =
       fastestSeconds([&] { map = require(buildVisibility(*s.stream, chosen, {}, options.context)); });
   if (c.options.layers == 0 && c.options.method == VisibilityMethod::DeepOpacity) {
-    sample.parameters[0].second = "auto: " + std::to_string(map->options().layers);
+    sample.parameters[0].second =
+        "auto: " +
+        (map->method() == VisibilityMethod::Exact ? "lists" : std::to_string(map->options().layers));
   }
   const Errors errors = seenErrors(s, *map);
   sample.error = errors.l1;

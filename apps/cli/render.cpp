@@ -157,9 +157,23 @@ class PreviewRenderer {
   bool grown_ = false, hairMesh_ = false;
 };
 
+/// What the path tracer did, and which lights it never asks for: lights are drawn by their brightness.
+void explainTracing(const Lights& lights, const PathTracePicture& picture, std::vector<StageReport>& stages) {
+  StageReport traced{"path tracing", StageState::Ran, "every picture is traced anew", picture.seconds};
+  traced.notes = picture.notes;
+  stages.push_back(std::move(traced));
+  const auto left = [&](const char* name, const Vec3f& color) {
+    if (color.isZero(0))
+      stages.push_back({name, StageState::Skipped, "it has no colour: no ray is sent to it (--light, look)"});
+  };
+  left("key light", lights.key.color);
+  left("fill light", lights.fill.color);
+  left("rim light", lights.rim.color);
+}
+
 Result<Json> tracePicture(const Subject& subject, const Scene& scene, const RenderArguments& arguments,
                           const Camera& camera, const std::string& path, const Context& context,
-                          Session& session) {
+                          Session& session, std::vector<StageReport>& stages) {
   PathTraceScene traced;
   traced.strands = subject.strands;
   traced.head = subject.head;
@@ -173,6 +187,7 @@ Result<Json> tracePicture(const Subject& subject, const Scene& scene, const Rend
   options.targetError = arguments.targetError;
   options.seed = scene.strands.seed;
   COIF_ASSIGN(const PathTracePicture picture, pathTrace(traced, options, context));
+  explainTracing(traced.lights, picture, stages);
   const PreviewOptions look = arguments.previewOptions(scene);
   const FloatImage seen = arguments.transparent
                               ? picture.image
@@ -222,9 +237,10 @@ Status render(const Arguments& all, Session& session) {
     COIF_ASSIGN(PreviewRenderer made, PreviewRenderer::create(subject, scene, arguments, context));
     preview.emplace(std::move(made));
   }
+  std::vector<StageReport> tracing;
   const auto picture = [&](const Subject& seen, const Camera& camera, const std::string& path) {
     return preview ? preview->render(camera, path, context, session)
-                   : tracePicture(seen, scene, arguments, camera, path, context, session);
+                   : tracePicture(seen, scene, arguments, camera, path, context, session, tracing);
   };
   // The GPU's hair moves in the head's frame, where its roots stand still; styled hair, hair in wisps and the
   // path tracer's in the scene's.
@@ -270,6 +286,7 @@ Status render(const Arguments& all, Session& session) {
     stages = evaluation.reports();
   }
   if (preview) stages.insert(stages.end(), preview->stages.begin(), preview->stages.end());
+  stages.insert(stages.end(), tracing.begin(), tracing.end());
   COIF_TRY(all.evaluate.tell(stages, session));
   const bool several = arguments.turntable > 0 || all.frames.asked();
   session.finish(several ? Json{{"pictures", results}} : results.front());

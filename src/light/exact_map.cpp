@@ -34,7 +34,8 @@ class ExactMap : public VisibilityMap {
   }
 
   double bytesPerTexel() const override {
-    return double(starts_.size() * 8 + depths_.size() * 4 + sums_.size() * 4) / double(starts_.size() - 1);
+    const double texels = double(starts_.size() - 1);
+    return exactMapBytes(texels, double(depths_.size()), channels()) / texels;
   }
   TransmittanceBound aPosterioriBound() const override { return {0, 0}; }
 

@@ -6,18 +6,28 @@
 namespace coif {
 namespace {
 
-constexpr int kChannels = 6;  // forward depth of R, G, B; variance of R, G, B
+constexpr std::size_t kMostValues = 6;  // forward depth of R, G, B; variance of R, G, B
 
-// What a fibre that covers `alpha` does to the light that meets its texel.
-std::array<float, kChannels> valuesOf(const DualScattering& hair, const Vec3& tangent, const Vec3& toLight,
-                                      double alpha) {
+bool isGrey(const DualScattering& hair) {
+  const auto alike = [](const std::vector<float>& colors) {
+    for (std::size_t i = 0; i < colors.size(); i += 3) {
+      if (colors[i] != colors[i + 1] || colors[i] != colors[i + 2]) return false;
+    }
+    return true;
+  };
+  return alike(hair.tables().forwardAttenuation) && alike(hair.tables().forwardVariance);
+}
+
+// What a fibre that covers `alpha` does to the light that meets its texel, in so many colour channels.
+std::array<float, kMostValues> valuesOf(const DualScattering& hair, std::size_t colors, const Vec3& tangent,
+                                        const Vec3& toLight, double alpha) {
   const double theta = std::asin(std::clamp(tangent.dot(toLight), -1.0, 1.0));
   const Vec3 forward = hair.forwardAttenuation(theta), variance = hair.forwardVariance(theta);
-  std::array<float, kChannels> out;
-  for (std::size_t c = 0; c < 3; ++c) {
+  std::array<float, kMostValues> out;
+  for (std::size_t c = 0; c < colors; ++c) {
     const double passed = forward[long(c)], left = std::max(1 - alpha * (1 - passed), 1e-7);
     out[c] = float(-std::log(left));
-    out[c + 3] = float(alpha * passed * variance[long(c)] / left);
+    out[c + colors] = float(alpha * passed * variance[long(c)] / left);
   }
   return out;
 }
@@ -37,13 +47,15 @@ Result<ForwardScatteringMap> ForwardScatteringMap::build(const StrandSet& strand
   seen.opaque = options.opaque;
   auto stream = FragmentStream::make(strands, view, seen, context);
   if (!stream) return stream.error();
+  const std::size_t colors = options.leaveOut && isGrey(hair) ? 1 : 3;
   ChannelSource source;
-  source.count = kChannels;
+  source.count = int(2 * colors);
   source.fill = [&](const Fragment& fragment, std::span<float> out) {
     const Vec3 a = strands.points[fragment.point].cast<double>();
     const Vec3 d = strands.points[fragment.point + 1].cast<double>() - a;
     const Vec3 toLight = towardsLight(view, a + double(fragment.along) * d);
-    std::ranges::copy(valuesOf(hair, d.normalized(), toLight, double(fragment.alpha)), out.begin());
+    const auto values = valuesOf(hair, colors, d.normalized(), toLight, double(fragment.alpha));
+    std::copy_n(values.begin(), 2 * colors, out.begin());
   };
   auto map = buildVisibility(*stream, options, source, context);
   if (!map) return map.error();
@@ -70,9 +82,10 @@ void ForwardScatteringMap::takeOut(const Vec3& world, const OwnHair& own,
       const double share = map_->shareInFront(here, at, depth);
       if (!(share > 0)) continue;
       const double alpha = std::min(own.coverage * stretch / view.texelAt(at), double(kGreatestAlpha));
-      const auto values = valuesOf(*hair_, own.tangent, toLight, alpha);
+      const std::size_t colors = colorChannels();
+      const auto values = valuesOf(*hair_, colors, own.tangent, toLight, alpha);
       tap.sums[0] = std::max(0.0, tap.sums[0] - share * double(opticalDepthOf(float(alpha))));
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < 2 * colors; ++c) {
         tap.sums[c + 1] = std::max(0.0, tap.sums[c + 1] - share * double(values[c]));
       }
     }
@@ -87,13 +100,18 @@ ForwardScattering ForwardScatteringMap::at(const Vec3& world, const OwnHair& own
   const std::span found = std::span(taps).first(std::size_t(map_->tapsAt(world, taps)));
   if (own.coverage > 0) takeOut(world, own, found);
   Vec3 spread = Vec3::Zero();
+  const std::size_t colors = colorChannels();
   for (const VisibilityMap::Tap& tap : found) {
     out.directFraction -= tap.weight * -std::expm1(-tap.sums[0]);
-    for (int c = 0; c < 3; ++c) {
-      const double lost = -std::expm1(-tap.sums[std::size_t(c) + 1]);
-      out.transmittance[c] -= tap.weight * lost;
-      spread[c] += tap.weight * (1 - lost) * tap.sums[std::size_t(c) + 4];
+    for (std::size_t c = 0; c < colors; ++c) {
+      const double lost = -std::expm1(-tap.sums[c + 1]);
+      out.transmittance[long(c)] -= tap.weight * lost;
+      spread[long(c)] += tap.weight * (1 - lost) * tap.sums[c + 1 + colors];
     }
+  }
+  if (colors == 1) {
+    out.transmittance.setConstant(out.transmittance.x());
+    spread.setConstant(spread.x());
   }
   out.directFraction = std::clamp(out.directFraction, 0.0, 1.0);
   for (int c = 0; c < 3; ++c) {

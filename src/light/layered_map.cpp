@@ -156,6 +156,12 @@ std::vector<Candidate> candidates(const FragmentStream& stream, const Visibility
   return all;
 }
 
+/// Few fragments a texel: sorted, they take no more memory than three layers, and are exact.
+bool listsAreSmall(const FragmentStream& stream, std::uint64_t fragments, int channels) {
+  const double texels = double(stream.texelCount());
+  return exactMapBytes(texels, double(fragments), channels) <= texels * 4 * (1 + 3 * channels);
+}
+
 }  // namespace
 
 MapResult buildOpacity(const FragmentStream& stream, const VisibilityOptions& options,
@@ -185,6 +191,11 @@ MapResult buildDeepOpacity(const FragmentStream& stream, const VisibilityOptions
             ? options.layerSize
             : chooseLayerSize(stream, options.sizes, options.layers, options.past, context).size;
     return build(options.layers, size);
+  }
+  if (options.leaveOut && listsAreSmall(stream, range.fragments, 1 + channels.count)) {
+    VisibilityOptions lists = options;
+    lists.method = VisibilityMethod::Exact;
+    return buildExact(stream, lists, channels, context);
   }
   // The whole map decides; the sampled texels only say where to begin.
   const std::vector<Candidate> tried = candidates(stream, options, context);

@@ -13,6 +13,7 @@ namespace coif {
 /// Depths of the first and last fragment of every texel; +∞ and −∞ where there is none.
 struct DepthRange {
   std::vector<float> near, far;
+  std::uint64_t fragments = 0;  ///< of all texels
   bool empty(std::size_t texel) const { return !(near[texel] <= far[texel]); }
   /// Over all texels; a unit range when there is no fragment.
   std::array<double, 2> whole() const;
@@ -37,6 +38,11 @@ class FragmentValues {
  private:
   const ChannelSource* source_;
 };
+
+/// Of the sorted lists of so many fragments.
+inline double exactMapBytes(double texels, double fragments, int channels) {
+  return 8 * (texels + 1) + fragments * 4 * (1 + channels);
+}
 
 /// Fails when `bytes` is more than a map may hold.
 Status checkMapBytes(double bytes);

@@ -1,5 +1,7 @@
 #include "coif/light/visibility.h"
 
+#include <numeric>
+
 #include "light/map_passes.h"
 
 namespace coif {
@@ -78,11 +80,15 @@ MapResult buildNone(const FragmentStream& stream, const VisibilityOptions& optio
 DepthRange depthRange(const FragmentStream& stream, const Context& context) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   DepthRange range{std::vector<float>(stream.texelCount(), kInfinity),
-                   std::vector<float>(stream.texelCount(), -kInfinity)};
+                   std::vector<float>(stream.texelCount(), -kInfinity), 0};
+  std::vector<std::uint64_t> counts(std::size_t(stream.bandCount()), 0);
+  const std::size_t bandTexels = std::size_t(FragmentStream::kBandRows) * std::size_t(stream.view().size);
   stream.forEach(context, [&](const Fragment& f) {
+    ++counts[f.texel / bandTexels];
     range.near[f.texel] = std::min(range.near[f.texel], f.depth);
     range.far[f.texel] = std::max(range.far[f.texel], f.depth);
   });
+  range.fragments = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   return range;
 }
 

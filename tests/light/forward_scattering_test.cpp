@@ -136,6 +136,34 @@ TEST(ForwardScatteringMap, FiltersWhatPassesNotItsLogarithm) {
   }
 }
 
+TEST(ForwardScatteringMap, GreyHairTakesOneChannelAndIsTheSame) {
+  FibreParameters grey;
+  grey.absorption = Vec3::Constant(0.1);
+  const DualScattering hair{FibreScattering(grey)};
+  const StrandSet strands = layersOfFibres({0.1, 0.15, 0.3, 0.5}, 0.004);
+  const LightView view = distantLightView(Vec3(0.2, 0, 1), {Vec3(-0.5, -0.5, -1), Vec3(0.5, 0.5, 0)}, 64);
+  VisibilityOptions options;  // seven layers
+  options.filter = true;
+  const auto one = ForwardScatteringMap::build(strands, hair, view, options);
+  options.leaveOut = false;
+  const auto three = ForwardScatteringMap::build(strands, hair, view, options);
+  ASSERT_TRUE(one.ok() && three.ok());
+  EXPECT_EQ(one->colorChannels(), 1u);
+  EXPECT_EQ(three->colorChannels(), 3u);
+  EXPECT_LT(one->map().bytesPerTexel(), 0.5 * three->map().bytesPerTexel());
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at(0.002 * i - 0.2, 0.01 + 0.0001 * i, -0.003 * i);
+    const OwnHair own{Vec3::UnitX(), i % 2 == 0 ? 0.0 : 0.004};
+    const ForwardScattering a = one->at(at, own), b = three->at(at, own);
+    EXPECT_EQ(a.directFraction, b.directFraction);
+    EXPECT_EQ(a.transmittance, b.transmittance);
+    EXPECT_EQ(a.variance, b.variance);
+  }
+  const auto brown = ForwardScatteringMap::build(strands, DualScattering(brownFibre()), view, {});
+  ASSERT_TRUE(brown.ok());
+  EXPECT_EQ(brown->colorChannels(), 3u);
+}
+
 TEST(ForwardScatteringMap, NoHairIsNoShadow) {
   const DualScattering hair(brownFibre());
   const LightView view = distantLightView(Vec3::UnitZ(), {}, 16);

@@ -213,10 +213,26 @@ TEST(Visibility, AutomaticLayersMeetTheirBoundAndAreTheFewest) {
   }
 }
 
+TEST(Visibility, AutomaticLayersAreListsWhereThoseAreNoLargerThanThree) {
+  VisibilityOptions o = method(VisibilityMethod::DeepOpacity);
+  o.layers = 0;
+  const LightView view = squareView(32);
+  const StrandSet thin = wavyStrands(20, 0.002f), dense = wavyStrands(6000, 0.002f);
+  const Map lists = build(thin, view, o), truth = build(thin, view, method(VisibilityMethod::Exact));
+  EXPECT_EQ(lists->method(), VisibilityMethod::Exact);
+  EXPECT_EQ(meanError(*lists, *truth), 0);
+  EXPECT_LE(lists->bytesPerTexel(), 16);
+  EXPECT_EQ(build(dense, view, o)->method(), VisibilityMethod::DeepOpacity);
+  o.leaveOut = false;
+  const Map layers = build(thin, view, o);
+  EXPECT_EQ(layers->method(), VisibilityMethod::DeepOpacity);
+  EXPECT_GE(layers->options().layers, 3);
+}
+
 TEST(Visibility, AutomaticLayersStopWhereNoMoreIsGained) {
   // Every fragment takes half of the light: no layer can take less, however many there are.
   VisibilityOptions o = method(VisibilityMethod::DeepOpacity);
-  o.layers = 0, o.bound = 0.01;
+  o.layers = 0, o.bound = 0.01, o.leaveOut = false;
   EXPECT_LE(build(column(spread(0.2, 0.8, 4), 0.5), squareView(4), o)->options().layers, 31);
 }
 

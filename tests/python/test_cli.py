@@ -198,6 +198,16 @@ def test_path_tracing_states_its_error_and_more_samples_lower_it(scenes, tmp_pat
     assert errors[1] < 0.5 * errors[0]
 
 
+def test_path_tracing_explains_which_lights_it_never_asks(scenes, tmp_path):
+    def stages(*light):
+        done = run("render", scenes / "bob.coif", "-o", tmp_path / "p.png", "--size", "16x16", "--strands", 20, "--spp", 2,
+                   "--shading", "path-traced", "--explain", *light)
+        return done.stdout
+    dark = stages("--light", "none")
+    assert "path tracing" in dark and all(f"{name} light" in dark for name in ("key", "fill", "rim"))
+    assert "key light" not in stages()
+
+
 @pytest.mark.parametrize("option, words", [
     ("--shading", ["kajiya-kay", "marschner", "energy-conserving", "dual-scattering"]),
     ("--visibility", ["none", "opacity", "occupancy", "exact"]),

@@ -27,7 +27,7 @@ class ForwardScatteringMap {
  public:
   /// Of one light, distant or a point, for hair of one colour. `strands` need not outlive it; `hair` and an
   /// opaque map in `options` must. Errors: those of FragmentStream::make and buildVisibility. Cost: that of
-  /// the visibility method with six further channels.
+  /// the visibility method with six further channels, two for grey hair.
   static Result<ForwardScatteringMap> build(const StrandSet& strands, const DualScattering& hair,
                                             const LightView& view, const VisibilityOptions& options,
                                             const Context& context = {},
@@ -37,6 +37,8 @@ class ForwardScatteringMap {
   /// fragments do not count.
   ForwardScattering at(const Vec3& world, const OwnHair& own = {}) const;
   const VisibilityMap& map() const { return *map_; }
+  /// 3; 1 of grey hair, whose channels are alike (VisibilityOptions::leaveOut).
+  std::size_t colorChannels() const { return std::size_t(map_->channels() - 1) / 2; }
 
  private:
   ForwardScatteringMap(std::unique_ptr<VisibilityMap> map, const DualScattering& hair)

@@ -31,9 +31,13 @@ const char* name(VisibilityMethod method);
 
 struct VisibilityOptions {
   VisibilityMethod method = VisibilityMethod::DeepOpacity;
-  int slices = 128;    ///< Opacity: 1 … 4096, over the hair's own range of depth
-  int clusters = 4;    ///< DensityClustering: 1 … 16
-  int layers = 7;      ///< DeepOpacity: 1 … 255; 0: the fewest of 3, 7, 11, 15, 23, … whose bound is met
+  int slices = 128;  ///< Opacity: 1 … 4096, over the hair's own range of depth
+  int clusters = 4;  ///< DensityClustering: 1 … 16
+  /// DeepOpacity: 1 … 255; 0: the fewest of 3, 7, 11, 15, 23, … whose bound is met
+  int layers = 7;
+  /// On the CPU: sorted lists where they are no larger than three layers, if `layers` is 0; forward
+  /// scattering of grey hair in one channel.
+  bool leaveOut = true;
   double bound = 0.1;  ///< for layers = 0: aPosterioriBound().mean at most, unless more layers gain < 3 %
   LayerSizes sizes = LayerSizes::Linear;
   PastLastLayer past = PastLastLayer::AddToLast;
