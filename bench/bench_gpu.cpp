@@ -115,6 +115,16 @@ Status timeFrames(bool quick, const Render& render) {
 struct Frame {
   double total = INFINITY, maps = INFINITY, strands = INFINITY, drawing = INFINITY, bytes = 0;
 };
+
+/// What a map costs by its algorithm, whatever the device: segments walked and texels touched in all passes,
+/// and the bytes that these move. A segment is two points of 32 bytes, a texel a number of 4 that is read and
+/// written; the map itself is filled, summed up and read once.
+void addWork(const Picture& picture, double mapBytes, const std::string& what, Rows& rows) {
+  const double segments = double(picture.work.mapSegments), texels = double(picture.work.mapTexels);
+  rows.add({what + ": segments walked into the map", segments, ""});
+  rows.add({what + ": texels touched", texels, ""});
+  rows.add({what + ": bytes moved", 64 * segments + 8 * texels + 3 * mapBytes, "bytes"});
+}
 Result<Frame> fastestFrame(PreviewSession& session, const PreviewOptions& options, bool quick) {
   Frame best;
   COIF_TRY(timeFrames(quick, [&](int k) -> Result<double> {
@@ -164,6 +174,13 @@ std::optional<Frame> orSay(Result<Frame> measured, const std::string& what, Rows
   return {};
 }
 
+/// Counted in a frame of its own: it takes one more pass over the strands.
+void countWork(Subject& subject, PreviewOptions frame, double mapBytes, const std::string& what, Rows& rows) {
+  frame.count = true, frame.keep = false;
+  const Picture picture = require(subject.session.render(frame));
+  if (picture.work.mapSegments > 0) addWork(picture, mapBytes, what, rows);
+}
+
 /// The frame whose light moved, by a shadow method.
 void measureShadow(Subject& subject, const Variant& variant, const BenchOptions& options, Rows& rows) {
   const std::string what = subject.prefix + variant.name;
@@ -179,6 +196,7 @@ void measureShadow(Subject& subject, const Variant& variant, const BenchOptions&
   }
   rows.addSeconds(what + ": shadow maps alone", measured->maps);
   rows.add({what + ": bytes of the maps", measured->bytes, "bytes"});
+  countWork(subject, frame, measured->bytes, what, rows);
 }
 
 /// The paper's claim: shadows cost no more than the picture itself.
@@ -191,6 +209,7 @@ void measureBar(Subject& subject, const BenchOptions& options, Rows& rows) {
   rows.addSeconds(subject.prefix + deep.name + ": frame, the light moved", moved.total);
   rows.addSeconds(subject.prefix + deep.name + ": shadow maps alone", moved.maps);
   rows.add({subject.prefix + deep.name + ": bytes of the maps", moved.bytes, "bytes"});
+  countWork(subject, frame, moved.bytes, subject.prefix + deep.name, rows);
   rows.add({subject.prefix + "the light moved, deep opacity maps of 7 layers over no shadows",
             moved.total / subject.unshadowed, "", options.quick ? Bar::None : Bar::AtMost, 2});
   const Frame still = require(fastestFrame(subject.session, frame, options.quick));
@@ -244,8 +263,8 @@ void measureUploads(Subject& subject, const HairMesh& mesh, const BenchOptions& 
   if (const Status moved = session.moveHair(positions, options.context); !moved.ok())
     throw BenchFault{moved.error()};
   const Picture picture = require(session.render(frame));
-  rows.add({subject.prefix + "bytes uploaded when the mesh moves", double(picture.uploaded.hairMesh),
-            "bytes"});
+  rows.add(
+      {subject.prefix + "bytes uploaded when the mesh moves", double(picture.uploaded.hairMesh), "bytes"});
   strandBytes("the mesh moves", picture);
 }
 
@@ -291,7 +310,8 @@ BenchReport benchGpu(const BenchOptions& options) {
   report.about =
       "Device: " + preview->renderer() + (preview->software() ? " (no GPU)" : "") +
       ". Hair of 20 by 20 bundles and 10 layers, points made on the device, one sub-frame of four samples; "
-      "the device is waited for after each stage. Fastest of three frames, or one of those that take more than "
+      "the device is waited for after each stage. Fastest of three frames, or one of those that take more "
+      "than "
       "half a second; what matters most comes first. Without a GPU the sizes are "
       "smaller; the names of the figures say which.";
   const bool small = options.quick || preview->software();
@@ -304,7 +324,9 @@ BenchReport benchGpu(const BenchOptions& options) {
   for (const Size& size : sizes) {
     const std::string prefix = std::to_string(size.strands) + " × 32, ";
     if (!rows.timeFor(prefix + "everything")) continue;
-    subjects.push_back({size, prefix, previewProblem(*preview, mesh, size.strands, double(size.width) / size.height, options)});
+    subjects.push_back(
+        {size, prefix,
+         previewProblem(*preview, mesh, size.strands, double(size.width) / size.height, options)});
     measureBar(subjects.back(), options, rows);
     measureCompute(subjects.back(), rows);
   }

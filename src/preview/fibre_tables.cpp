@@ -1,7 +1,5 @@
 #include "preview/fibre_tables.h"
 
-#include <algorithm>
-
 #include "coif/light/hair_color.h"
 #include "preview/frame_data.h"
 
@@ -71,7 +69,6 @@ FibreTables::FibreTables(const FibreParameters& fibre) : fibre_(fibre) {
   const DualScatteringTables& tables = dual.tables();
   const Vec3 a = scattering.parameters().absorption;
   grey_ = a.x() == a.y() && a.y() == a.z();
-  mostForward_ = double(*std::ranges::max_element(tables.forwardAttenuation));
   const auto across = 3 * std::size_t(tables.inclinations / 2);
   for (int c = 0; c < 3; ++c) forwardAcross_[c] = float(tables.forwardAttenuation[across + std::size_t(c)]);
 

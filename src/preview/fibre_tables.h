@@ -20,13 +20,10 @@ class FibreTables {
   bool grey() const { return grey_; }  ///< all channels alike: one is enough
   /// The part that goes on of light across a hair, ā_f.
   Vec3f forwardAcross() const { return forwardAcross_; }
-  /// The greatest part of the light that goes on through a hair, over colours and inclinations.
-  double mostForward() const { return mostForward_; }
 
  private:
   FibreParameters fibre_;
   bool grey_ = false;
-  double mostForward_ = 0;
   Vec3f forwardAcross_ = Vec3f::Zero();
   Buffer uniforms_;
   Texture azimuthal_, inclination_;

@@ -157,13 +157,7 @@ Texture HairMap::makeLayers(int count, GLenum format) {
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   const bool integers = format == GL_R32UI;
   bytes_ += std::size_t(view_.size) * std::size_t(view_.size) * std::size_t(count) * (integers ? 4 : 16);
-  Texture texture(name);
-  if (integers) {
-    clearIntegers(texture);
-  } else {
-    clearColor(texture, {0, 0, 0, 0});
-  }
-  return texture;
+  return Texture(name);
 }
 
 Texture HairMap::makeFlat(GLenum format) {
@@ -217,6 +211,7 @@ void HairMap::drawWholeRange(const Programs& programs) {
 void HairMap::drawClusters(const Programs& programs, const StrandBuffers& lines) {
   drawRange(programs, lines);
   const Texture means = makeLayers(2), amounts = makeLayers(2);
+  for (const Texture* sums : {&means, &amounts}) clearColor(*sums, {0, 0, 0, 0});
   bytes_ -= 64 * std::size_t(view_.size) * std::size_t(view_.size);  // not kept
   layers_ = makeLayers(3);
   drawAdding(lines, programs(linePass("PASS_MEANS")), means, view_.size);

@@ -126,6 +126,16 @@ Status HairMap::drawOccupancy(const Programs& programs, const StrandBuffers& lin
   return {};
 }
 
+Result<std::uint64_t> HairMap::texelsTouched(const Programs& programs, const StrandBuffers& lines) const {
+  FragmentLists lists(view_.size, view_.size);
+  lists.bindCounts();
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms_.name());
+  glUseProgram(programs(walkPass("WALK_COUNT", {})));
+  walk(lines);
+  COIF_TRY(lists.makeRoom(0, SIZE_MAX));
+  return std::uint64_t(lists.entries());
+}
+
 Status HairMap::drawLists(const Programs& programs, const StrandBuffers& lines) {
   lists_.emplace(view_.size, view_.size);
   lists_->bindCounts();

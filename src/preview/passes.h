@@ -50,11 +50,13 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 class ShadowPass {
  public:
   /// Fills the volume fields of `frame`, which must be on the GPU already; null strands or head are left out.
-  /// `lists`: sorted lists may take the place of a number of layers that is to be chosen.
+  /// `lists`: sorted lists may take the place of a number of layers that is to be chosen. `surfaces`: there
+  /// are some on which the hair's shadow falls.
   static Result<ShadowPass> make(const Programs& programs, const LightView& view,
                                  const VisibilityOptions& options, bool lists, const CoarseStrands* strands,
                                  const Fog* fog, const Openness* open, const StrandBuffers* lines,
-                                 const HeadBuffers* headBuffers, FrameData& frame, const Context& context);
+                                 const HeadBuffers* headBuffers, bool surfaces, FrameData& frame,
+                                 const Context& context);
   void bindForHair() const;
   void bindForHead() const;
   const HairMap& map() const { return map_; }

@@ -7,6 +7,22 @@
 
 namespace coif {
 
+namespace {
+
+constexpr int kMostLookUps = 2;  // of the key light's map a point; hairs that overlap make the mean of more
+
+int lookUpsOf(const PreviewOptions& options) {
+  return std::min(options.subframes, kMostLookUps);
+}
+
+/// Evaluations of a hair's scattering for one light, as shaders/fibre_tables.glsl makes them: alone, and with
+/// multiple scattering from behind as well, and both again for scattered light, by channel.
+std::uint64_t scatteringTerms(const ShadeParts& parts) {
+  return !parts.multiple ? 1 : parts.grey ? 4 : 8;
+}
+
+}  // namespace
+
 void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture) {
   if (!hair) return;
   StageReport& stage = report(picture, "shading", StageState::Ran, "light, hair or camera may have moved");
@@ -16,30 +32,30 @@ void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture
     stage.reason = "half-angle slices are lit as they are drawn";
     return;
   }
-  useShading(options, false, stage);
+  const ShadeParts parts = useShading(options, false, stage);
   eyeStrands->dispatchPoints();
+  eyeStrands->takeWalked();
+  const std::uint64_t lights = std::uint64_t(lookUpsOf(options)) + 2;
+  picture.work.scatterings = eyeStrands->plan().points * lights * scatteringTerms(parts);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void PreviewSession::Impl::useShading(const PreviewOptions& options, bool slices, StageReport& stage) {
-  constexpr int kMostLookUps = 2;  // a point; hairs that overlap make the mean of more
-  constexpr double kDark = 0.01;   // of the light goes on through a hair: nothing is left after two
+ShadeParts PreviewSession::Impl::useShading(const PreviewOptions& options, bool slices, StageReport& stage) {
   const bool tables = options.shading != PreviewShading::Studio;
   if (tables) {
     const FibreParameters wanted = fibreOf(options);
     if (fibre == nullptr || !sameFibre(fibre->fibre(), wanted)) fibre = std::make_unique<FibreTables>(wanted);
     fibre->bind();
   }
-  const bool asked = options.shading == PreviewShading::DualScattering;
-  const bool multiple = asked && !(options.leaveOut && fibre->mostForward() < kDark);
-  if (asked && !multiple) stage.notes.push_back("dark hair: no multiple scattering");
+  const bool multiple = options.shading == PreviewShading::DualScattering;
   hairPasses = multiple ? fibre->forwardAcross() : Vec3f(Vec3f::Zero());
   const bool grey = tables && options.leaveOut && fibre->grey();
   if (grey) stage.notes.push_back("grey hair: one channel");
   shadows->bindForHair();
-  glUseProgram((*device->programs)(
-      shadeProgram(shadows->map().options(), {shadowsHaveHair, tables, multiple, grey, slices})));
-  glUniform1i(1, std::min(options.subframes, kMostLookUps));
+  const ShadeParts parts{shadowsHaveHair, tables, multiple, grey, slices};
+  glUseProgram((*device->programs)(shadeProgram(shadows->map().options(), parts)));
+  glUniform1i(1, lookUpsOf(options));
+  return parts;
 }
 
 Status PreviewSession::Impl::makeEye(const PreviewOptions& options, const View& view, Picture& picture) {
@@ -143,6 +159,7 @@ Status PreviewSession::Impl::draw(const PreviewOptions& options, const View& vie
     COIF_TRY(drawSubframe(options, view, k == 0));
     context.report("picture", double(k + 1) / options.subframes);
   }
+  if (hair) picture.work.eyeSegments = eyeStrands->takeWalked();
   picture.image = targets->finish(*device->programs, device->empty, options.subframes);
   return {};
 }

@@ -34,6 +34,7 @@ struct PreviewSession::Impl {
   std::unique_ptr<ShadowPass> shadows;
   FrameData shadowFrame;  ///< of the picture that `shadows` was made for
   bool shadowsHaveHair = false;
+  bool shadowsOnSurfaces = false;  ///< head or ground were there to take them
   VisibilityOptions shadowOptions;
   DetailOptions shadowDetail;  ///< of the strands in the maps
   std::unique_ptr<FibreTables> fibre;
@@ -64,12 +65,13 @@ struct PreviewSession::Impl {
                          const Context& context);
   Status makeShadows(const PreviewOptions& options, FrameData& frame, Buffer& frameBuffer, Picture& picture,
                      const Context& context);
+  Status countMapWork(const PreviewOptions& options, Picture& picture);
   Status draw(const PreviewOptions& options, const View& view, FrameData& frame, Buffer& frameBuffer,
               Picture& picture, const Context& context);
   Status drawSubframe(const PreviewOptions& options, const View& view, bool first);
   void shade(const PreviewOptions& options, Picture& picture);
   /// Binds the program that lights strands, with what it reads.
-  void useShading(const PreviewOptions& options, bool sliced, StageReport& stage);
+  ShadeParts useShading(const PreviewOptions& options, bool sliced, StageReport& stage);
   Status makeSlices(const PreviewOptions& options, const View& view, const FrameData& frame,
                     Picture& picture);
   Status drawSlices(const PreviewOptions& options, const EyeScene& scene, bool first);

@@ -181,6 +181,7 @@ void PreviewSession::Impl::follow(std::unique_ptr<StrandBuffers>& strands, bool&
                                               topology);
   }
   stage.bytes = strands->bytes();
+  picture.work.points += strands->plan().points;
   old = false;
 }
 
@@ -230,8 +231,9 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
       needsLines && (shadowStrands == nullptr || shadowOld || shadowDetail != mapDetailOf(options, *device));
   const bool moved = withHair && (otherLines || fog == nullptr);
   const bool light = sameLight(frame, shadowFrame);
+  const bool surfaces = headBuffers != nullptr || ground;
   if (options.keep && shadows != nullptr && !moved && light && shadowsHaveHair == withHair &&
-      sameMap(visibility, shadowOptions)) {
+      (shadowsOnSurfaces || !surfaces) && sameMap(visibility, shadowOptions)) {
     copyShadowFields(shadowFrame, frame);
     write(frameBuffer, &frame, sizeof frame);
     report(picture, "shadow maps", withHair ? StageState::Reused : StageState::Skipped,
@@ -257,14 +259,26 @@ Status PreviewSession::Impl::makeShadows(const PreviewOptions& options, FrameDat
               ShadowPass::make(*device->programs, lightView, visibility, options.leaveOut,
                                withHair ? &hair->model.coarse : nullptr, withHair ? fog.get() : nullptr,
                                openness.get(), withHair && needsLines ? shadowStrands.get() : nullptr,
-                               options.shadows ? headBuffers.get() : nullptr, frame, context));
+                               options.shadows ? headBuffers.get() : nullptr, surfaces, frame, context));
   shadows = std::make_unique<ShadowPass>(std::move(made));
+  if (withHair && needsLines) COIF_TRY(countMapWork(options, picture));
   stage.bytes = shadows->map().bytes();
   if (dark) stage.notes.push_back("the key light is dark: no map");
   if (!shadows->map().choice().empty()) stage.notes.push_back(shadows->map().choice());
   shadowFrame = frame;
   shadowsHaveHair = withHair;
+  shadowsOnSurfaces = surfaces;
   shadowOptions = visibility;
+  return {};
+}
+
+Status PreviewSession::Impl::countMapWork(const PreviewOptions& options, Picture& picture) {
+  picture.work.mapSegments = shadowStrands->takeWalked();
+  const std::uint64_t once = shadowStrands->plan().segments();
+  if (!options.count || once == 0) return {};
+  COIF_ASSIGN(const std::uint64_t touched, shadows->map().texelsTouched(*device->programs, *shadowStrands));
+  picture.work.mapTexels = touched * (picture.work.mapSegments / once);
+  shadowStrands->takeWalked();
   return {};
 }
 

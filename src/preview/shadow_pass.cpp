@@ -81,7 +81,7 @@ double chooseLayerSize(const CoarseStrands& hair, const LightView& view, const V
 Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& view,
                                     const VisibilityOptions& options, bool lists,
                                     const CoarseStrands* strands, const Fog* fog, const Openness* open,
-                                    const StrandBuffers* lines, const HeadBuffers* headBuffers,
+                                    const StrandBuffers* lines, const HeadBuffers* headBuffers, bool surfaces,
                                     FrameData& frame, const Context& context) {
   ShadowPass pass;
   LightVolumes volumes;
@@ -114,7 +114,7 @@ Result<ShadowPass> ShadowPass::make(const Programs& programs, const LightView& v
   }
   pass.map_.bind();
   pass.headDepth_ = drawHead(programs, headBuffers, view.size);
-  if (lines != nullptr && SurfaceShadow::usedBy(pass.map_.options()))
+  if (surfaces && lines != nullptr && SurfaceShadow::usedBy(pass.map_.options()))
     pass.surface_ = SurfaceShadow(programs, pass.map_, pass.headDepth_,
                                   kSpread * meanWidth(*strands) * lines->plan().widthScale);
   return pass;

@@ -166,6 +166,7 @@ void StrandBuffers::bindBatch(std::size_t b) const {
 void StrandBuffers::draw() const {
   if (plan_.points == 0) return;
   constexpr GLenum kModes[] = {GL_TRIANGLE_STRIP, GL_LINE_STRIP, GL_LINES};
+  walked_ += plan_.segments();
   glEnable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
   glBindVertexArray(array_.name());
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
@@ -178,6 +179,7 @@ void StrandBuffers::draw() const {
 }
 
 void StrandBuffers::dispatchPoints() const {
+  walked_ += plan_.segments();
   for (std::size_t b = 0; b < plan_.batches.size(); ++b) {
     const Batch& batch = plan_.batches[b];
     bindBatch(b);

@@ -1,6 +1,8 @@
 // Strands on the GPU: what they are made from, and the points of a plan.
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "preview/compute.h"
@@ -46,6 +48,8 @@ class StrandBuffers {
   Topology topology() const { return topology_; }
   const DetailPlan& plan() const { return plan_; }
   std::size_t bytes() const { return bytes_; }  ///< of points and indices
+  /// Segments walked or drawn since it was last asked.
+  std::uint64_t takeWalked() const { return std::exchange(walked_, 0); }
 
   struct Point {
     Vec3f position;
@@ -66,6 +70,7 @@ class StrandBuffers {
   GLsizei indexCount(const Batch& batch) const;
 
   DetailPlan plan_;
+  mutable std::uint64_t walked_ = 0;
   Topology topology_ = Topology::Ribbons;
   std::size_t bytes_ = 0;
   std::vector<std::size_t> pointOffsets_, indexOffsets_;  ///< of batches, in points and indices

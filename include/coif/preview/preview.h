@@ -92,7 +92,8 @@ struct PreviewOptions {
   std::size_t maxSegments = 0;  ///< with lod: bound on ribbon segments; 0: by the machine
   bool lines = true;            ///< with lod: hairs thinner than a pixel are lines, at half a ribbon's cost
   bool keep = true;             ///< false: a session makes everything again, as if all had changed
-  bool measure = false;         ///< wait for the GPU after each stage, so that its seconds are its own
+  bool count = false;    ///< texels of shadow maps too (Picture::work), by one more pass over the strands
+  bool measure = false;  ///< wait for the GPU after each stage, so that its seconds are its own
 };
 
 /// Bytes that went to the GPU for a picture.
@@ -105,6 +106,15 @@ struct PreviewUpload {
   std::uint64_t frame = 0;  ///< camera, lights and colours
 };
 
+/// What a picture asked of the device, counted where it is asked: the same on any machine.
+struct PreviewWork {
+  std::uint64_t points = 0;       ///< of strands that were made
+  std::uint64_t mapSegments = 0;  ///< walked or drawn into shadow maps, in each pass
+  std::uint64_t mapTexels = 0;    ///< that these touched, in each pass; with PreviewOptions::count
+  std::uint64_t eyeSegments = 0;  ///< walked or drawn for the eye, in each pass of each sub-frame
+  std::uint64_t scatterings = 0;  ///< evaluations of a hair's scattering, at most: lights × look-ups × terms
+};
+
 struct Picture {
   Image image;
   std::size_t strandsDrawn = 0, segmentsDrawn = 0;
@@ -113,6 +123,7 @@ struct Picture {
   double seconds = 0;
   std::vector<std::string> notes;  ///< a sentence each
   PreviewUpload uploaded;
+  PreviewWork work;
   std::vector<StageReport> stages;  ///< what ran, what was kept, what was left out, and why
 };
 
