@@ -148,20 +148,27 @@ void measure(const Surface& surface, Cage& cage) {
 
 Result<Cage> gridCage(const Surface& surface, const Region& region, const CageOptions& options,
                       const Context& context, Cage cage) {
+  const auto stopped = [&] { return makeError(ErrorCode::Cancelled, "The cage was cancelled."); };
   PatchOptions cut;
   cut.mirror = cage.mirror;
+  context.report("cutting the scalp out of the head", 0);
   COIF_ASSIGN(Patch patch, cutPatch(surface, region, cut));
+  if (context.cancelled()) return stopped();
   if (cage.mirror && patch.middle.empty()) {
     cage.notes.push_back("The mirror plane does not part the region in two halves: no symmetry was kept.");
     cage.mirror.reset();
     COIF_ASSIGN(patch, cutPatch(surface, region, {}));
   }
   const Ends ends = findEnds(patch, cage.frame);
+  context.report("laying the scalp flat", 0.3);
   const DiscMap map = mapToDisc(patch, ends.front, ends.back);
-  const PatchLocator locator(patch, map);
+  if (context.cancelled()) return stopped();
+  context.report("search trees of the scalp", 0.7);
+  const PatchLocator locator(patch, map, context);
+  if (context.cancelled()) return stopped();
   const GridSize size = chooseGrid(locator, options.count);
   const auto places = layGrid(locator, size, ends.front, ends.back, cage.mirror, options.smoothing, context);
-  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "The cage was cancelled.");
+  if (context.cancelled()) return stopped();
 
   cage.columns = size.columns;
   cage.rows = size.rows;

@@ -16,7 +16,7 @@ struct PatchLocator::Impl {
   Vec3 origin = Vec3::Zero();
 };
 
-PatchLocator::PatchLocator(const Patch& patch, const DiscMap& map)
+PatchLocator::PatchLocator(const Patch& patch, const DiscMap& map, const Context& context)
     : impl_(std::make_unique<Impl>(Impl{patch, {}, {}, 1, Vec3::Zero()})) {
   const Box box = bounds(patch.positions);
   impl_->origin = box.lo;
@@ -31,8 +31,10 @@ PatchLocator::PatchLocator(const Patch& patch, const DiscMap& map)
     space.push_back(s);
     disc.push_back(d);
   }
-  impl_->space = TriangleTree(std::move(space));
-  impl_->disc = TriangleTree(std::move(disc));
+  // Half a tree would answer nothing: whoever was cancelled asks for no more than that.
+  const Context whole{context.threads};
+  impl_->space = TriangleTree(std::move(space), whole);
+  impl_->disc = TriangleTree(std::move(disc), whole);
 }
 PatchLocator::~PatchLocator() = default;
 
@@ -77,10 +79,13 @@ class EdgePath {
  public:
   EdgePath(const Patch& patch, std::vector<std::uint32_t> vertices)
       : patch_(patch), vertices_(std::move(vertices)) {
+    std::vector<std::uint8_t> on(patch.positions.size(), 0);
+    for (std::uint32_t v : vertices_) on[v] = 1;
     for (std::size_t t = 0; t < patch.triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k)
-        edges_.try_emplace(std::minmax(patch.triangles[t][k], patch.triangles[t][(k + 1) % 3]),
-                           std::uint32_t(t));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = patch.triangles[t][k], b = patch.triangles[t][(k + 1) % 3];
+        if (on[a] && on[b]) edges_.try_emplace(std::minmax(a, b), std::uint32_t(t));
+      }
     for (std::size_t i = 1; i < vertices_.size(); ++i)
       running_.push_back(running_.back() + (at(i) - at(i - 1)).norm());
   }
@@ -281,12 +286,13 @@ GridSize chooseGrid(const PatchLocator& locator, int count) {
 std::vector<PatchPoint> layGrid(const PatchLocator& locator, GridSize size, std::uint32_t front,
                                 std::uint32_t back, const std::optional<MirrorPlane>& mirror, int rounds,
                                 const Context& context) {
+  context.report("cage", 0.85);
   Smoother smoother(locator, size, mirror);
   smoother.start(front, back);
   std::vector<PatchPoint> best = smoother.points();
   double bestBadness = smoother.badness();
   for (int i = 0; i < rounds && !context.cancelled(); ++i) {
-    context.report("cage", double(i) / rounds);
+    context.report("cage", 0.85 + 0.15 * double(i) / rounds);
     const double moved = smoother.round();
     const double badness = smoother.badness();
     // Equal badness too: infinite ones are worth smoothing on.

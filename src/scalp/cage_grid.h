@@ -18,7 +18,7 @@ struct GridSize {
 /// Nearest-point queries on a patch in space and in its disc.
 class PatchLocator {
  public:
-  PatchLocator(const Patch& patch, const DiscMap& map);
+  PatchLocator(const Patch& patch, const DiscMap& map, const Context& context = {});
   ~PatchLocator();
   PatchPoint nearest(const Vec3& position) const;
   PatchPoint inDisc(const Vec2& uv) const;

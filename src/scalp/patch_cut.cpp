@@ -224,7 +224,8 @@ double Patch::area(std::size_t t) const {
 
 Result<Patch> cutPatch(const Surface& surface, const Region& region, const PatchOptions& options) {
   const PolygonMesh& mesh = surface.mesh();
-  Cutter whole(surface), cutter(surface);
+  Cutter whole(surface);
+  Cutter cutter = whole;
   for (std::uint32_t t = 0; t < surface.triangleCount(); ++t) {
     if (region.faces[surface.triangleFace(t)]) whole.addTriangle(t);
     cutter.addTriangle(t);

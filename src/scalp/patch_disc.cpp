@@ -28,12 +28,15 @@ struct Corners {
 void splitFans(Patch& patch) {
   const Corners c(patch);
   DisjointSets fans = cornerFans(buildEdges(c.offsets, c.corners), c.corners.size());
-  std::map<std::uint32_t, std::uint32_t> number;
+  std::vector<std::uint32_t> number(c.corners.size(), kNone);  // by fan
   std::vector<Vec3> positions;
   for (std::uint32_t i = 0; i < c.corners.size(); ++i) {
-    const auto [it, isNew] = number.try_emplace(fans.find(i), std::uint32_t(positions.size()));
-    if (isNew) positions.push_back(patch.positions[c.corners[i]]);
-    patch.triangles[i / 3][i % 3] = it->second;
+    std::uint32_t& n = number[fans.find(i)];
+    if (n == kNone) {
+      n = std::uint32_t(positions.size());
+      positions.push_back(patch.positions[c.corners[i]]);
+    }
+    patch.triangles[i / 3][i % 3] = n;
   }
   patch.positions = std::move(positions);
 }
@@ -97,18 +100,30 @@ double cotangent(const Vec3& apex, const Vec3& a, const Vec3& b) {
   return area > 0 ? (a - apex).dot(b - apex) / area : 0;
 }
 
-using Edges = std::map<std::pair<std::uint32_t, std::uint32_t>, double>;
+struct WeightedEdge {
+  std::uint32_t a, b;  // a < b
+  double weight;
+};
 
-Edges weights(const Patch& patch, bool uniform) {
-  Edges edges;
+/// Each edge once.
+std::vector<WeightedEdge> weights(const Patch& patch, bool uniform) {
+  std::vector<WeightedEdge> edges;
+  edges.reserve(3 * patch.triangles.size());
   for (const Patch::Triangle& t : patch.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[(k + 1) % 3], b = t[(k + 2) % 3];
-      edges[std::minmax(a, b)] +=
-          0.5 * cotangent(patch.positions[t[k]], patch.positions[a], patch.positions[b]);
+      const auto [a, b] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
+      edges.push_back({a, b, 0.5 * cotangent(patch.positions[t[k]], patch.positions[a], patch.positions[b])});
     }
+  // At most two triangles share an edge: the sum does not depend on their order.
+  std::ranges::sort(edges, {}, [](const WeightedEdge& e) { return std::uint64_t{e.a} << 32 | e.b; });
+  std::size_t kept = 0;
+  for (const WeightedEdge& e : edges) {
+    const bool again = kept > 0 && edges[kept - 1].a == e.a && edges[kept - 1].b == e.b;
+    again ? void(edges[kept - 1].weight += e.weight) : void(edges[kept++] = e);
+  }
+  edges.resize(kept);
   // Tutte needs weights above 0; a range of 1e4 keeps the system well conditioned.
-  for (auto& [key, w] : edges) w = uniform ? 1 : std::clamp(w, 0.01, 100.0);
+  for (WeightedEdge& e : edges) e.weight = uniform ? 1 : std::clamp(e.weight, 0.01, 100.0);
   return edges;
 }
 
@@ -120,8 +135,8 @@ bool solve(const Patch& patch, const std::vector<std::uint8_t>& fixed, bool unif
   if (unknowns == 0) return true;
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns, 2);
-  for (const auto& [key, w] : weights(patch, uniform)) {
-    const std::uint32_t ends[2] = {key.first, key.second};
+  for (const auto& [a, b, w] : weights(patch, uniform)) {
+    const std::uint32_t ends[2] = {a, b};
     for (int k = 0; k < 2; ++k) {
       const int i = row[ends[k]], j = row[ends[1 - k]];
       if (i < 0) continue;

@@ -33,25 +33,34 @@ struct Surface::Impl {
     return mesh.corners[triangulation.triangles[triangle][std::size_t(corner)]];
   }
 
-  void build() {
+  void build(const Context& context) {
+    context.report("triangles of the head", 0.2);
     triangulation = triangulate(mesh);
     size = bounds(mesh.positions).diagonal();
-    std::vector<Vec3> used;
-    for (std::uint32_t t = 0; t < triangulation.triangles.size(); ++t)
-      for (int k = 0; k < 3; ++k) used.push_back(mesh.positions[vertex(t, k)]);
-    const Box box = bounds(used);
+    const std::size_t count = triangulation.triangles.size();
+    Box box;
+    if (count > 0) box.lo = box.hi = mesh.positions[vertex(0, 0)];
+    for (std::uint32_t t = 0; t < count; ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& p = mesh.positions[vertex(t, k)];
+        box.lo = box.lo.cwiseMin(p), box.hi = box.hi.cwiseMax(p);
+      }
+    }
     centre = 0.5 * box.lo + 0.5 * box.hi;
     if (const double d = box.diagonal(); d > 0 && std::isfinite(d)) scale = d;
-    std::vector<TriangleTree::Triangle> triangles(triangulation.triangles.size());
+    context.report("normals of the head", 0.35);
+    std::vector<TriangleTree::Triangle> triangles(count);
     vertexNormals.assign(mesh.vertexCount(), Vec3::Zero());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) triangles[t][k] = toTree(used[3 * t + k]);
+    for (std::size_t t = 0; t < count; ++t) {
+      for (int k = 0; k < 3; ++k)
+        triangles[t][std::size_t(k)] = toTree(mesh.positions[vertex(std::uint32_t(t), k)]);
       const Vec3 n = (triangles[t][1] - triangles[t][0]).cross(triangles[t][2] - triangles[t][0]);
       for (int k = 0; k < 3; ++k) vertexNormals[vertex(std::uint32_t(t), k)] += n;
     }
     for (Vec3& n : vertexNormals)
       if (const double length = n.norm(); length > 0) n /= length;
-    tree = TriangleTree(std::move(triangles));
+    context.report("search tree of the head", 0.5);
+    if (!context.cancelled()) tree = TriangleTree(std::move(triangles), context);
   }
 
   Vec3 faceNormal(std::uint32_t triangle) const {
@@ -80,7 +89,15 @@ struct Surface::Impl {
 
 Surface::Surface(const PolygonMesh& mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = mesh;
-  impl_->build();
+  impl_->build({});
+}
+Surface::Surface(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Result<Surface> Surface::create(PolygonMesh mesh, const Context& context) {
+  auto impl = std::make_unique<Impl>();
+  impl->mesh = std::move(mesh);
+  impl->build(context);
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "stopped while the head was read");
+  return Surface(std::move(impl));
 }
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;

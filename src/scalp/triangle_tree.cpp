@@ -2,6 +2,7 @@
 
 #include <igl/AABB.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The tree is balanced: its depth is at most log2(2^32) + 1, and a walk keeps one sibling a level.
 constexpr std::size_t kMaxStack = 80;
 // Below this the triangles' own solid angles cost less than the moments' memory.
-constexpr std::size_t kFewTriangles = 8;
+constexpr std::uint32_t kFewTriangles = 8;
 
 Vec3 point(const TriangleTree::Triangle& t, const Vec3& b) {
   return b[0] * t[0] + b[1] * t[1] + b[2] * t[2];
@@ -103,50 +104,83 @@ Vec3 nearestOnTriangle(const TriangleTree::Triangle& t, const Vec3& p) {
   return best;
 }
 
-TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
-  if (triangles_.empty()) return;
-  const auto count = Eigen::Index(triangles_.size());
-  Eigen::MatrixXd V(3 * count, 3);
-  Eigen::MatrixXi F(count, 3);
-  for (Eigen::Index t = 0; t < count; ++t)
-    for (int k = 0; k < 3; ++k) {
-      V.row(3 * t + k) = triangles_[std::size_t(t)][std::size_t(k)].transpose();
-      F(t, k) = int(3 * t + k);
-    }
+namespace {
+
+/// Triangles below, in the order of the leaves.
+void gather(const IglTree& tree, std::vector<std::uint32_t>& out) {
+  if (tree.is_leaf()) out.push_back(std::uint32_t(tree.m_primitive));
+  if (tree.m_left) gather(*tree.m_left, out);
+  if (tree.m_right) gather(*tree.m_right, out);
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(std::vector<Triangle> triangles, const Context& context)
+    : moments_(std::make_unique<Moments>()) {
+  const auto count = Eigen::Index(triangles.size());
+  if (count == 0) return;
   IglTree tree;
-  tree.init(V, F);
-  nodes_.reserve(2 * triangles_.size());
-  copyTree(&tree);
-  std::vector<std::uint32_t> below;
-  gather(0, below);
-}
-
-std::uint32_t TriangleTree::copyTree(const void* opaque) {
-  const auto& tree = *static_cast<const IglTree*>(opaque);
-  const auto index = std::uint32_t(nodes_.size());
-  nodes_.emplace_back();
-  if (tree.is_leaf()) nodes_[index].triangle = std::uint32_t(tree.m_primitive);
-  const std::uint32_t left = tree.m_left ? copyTree(tree.m_left) : kNone;
-  const std::uint32_t right = tree.m_right ? copyTree(tree.m_right) : kNone;
-  nodes_[index].left = left;
-  nodes_[index].right = right;
-  return index;
-}
-
-TriangleTree::Far TriangleTree::farField(std::span<const std::uint32_t> triangles) const {
-  Far far;
-  double area = 0;
-  Vec3 middle = Vec3::Zero();
-  for (std::uint32_t i : triangles) {
-    const Triangle& t = triangles_[i];
-    const double a = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
-    area += a;
-    far.centre += a * (t[0] + t[1] + t[2]) / 3;
-    middle += (t[0] + t[1] + t[2]) / (3 * double(triangles.size()));
+  {
+    Eigen::MatrixXd V(3 * count, 3);
+    Eigen::MatrixXi F(count, 3);
+    for (Eigen::Index t = 0; t < count; ++t)
+      for (int k = 0; k < 3; ++k) {
+        V.row(3 * t + k) = triangles[std::size_t(t)][std::size_t(k)].transpose();
+        F(t, k) = int(3 * t + k);
+      }
+    if (context.cancelled()) return;
+    tree.init(V, F);
   }
-  far.centre = area > 0 ? Vec3(far.centre / area) : middle;
-  for (std::uint32_t i : triangles) {
-    const Triangle& t = triangles_[i];
+  if (context.cancelled()) return;
+  number_.reserve(triangles.size()), nodes_.reserve(triangles.size());
+  copyTree(&tree);
+  triangles_.reserve(triangles.size());
+  for (const std::uint32_t t : number_) triangles_.push_back(triangles[t]);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parents
+    Node& node = nodes_[n];
+    node.lo = Vec3::Constant(kInfinity), node.hi = -node.lo;
+    if (node.right != kNone) {
+      node.lo = nodes_[n + 1].lo.cwiseMin(nodes_[node.right].lo);
+      node.hi = nodes_[n + 1].hi.cwiseMax(nodes_[node.right].hi);
+    } else {
+      for (std::uint32_t t = node.first; t < node.first + node.count; ++t)
+        for (const Vec3& p : triangles_[t]) node.lo = node.lo.cwiseMin(p), node.hi = node.hi.cwiseMax(p);
+    }
+  }
+}
+
+void TriangleTree::copyTree(const void* opaque) {
+  const auto& tree = *static_cast<const IglTree*>(opaque);
+  const auto index = std::uint32_t(nodes_.size()), first = std::uint32_t(number_.size());
+  nodes_.emplace_back().first = first;
+  // Leaves of up to four: as quick to look at as two more boxes.
+  const auto isLeaf = [](const IglTree* t) { return t == nullptr || t->is_leaf(); };
+  const auto isPair = [&](const IglTree* t) {
+    return isLeaf(t) || (isLeaf(t->m_left) && isLeaf(t->m_right));
+  };
+  if (tree.is_leaf() || (isPair(tree.m_left) && isPair(tree.m_right))) {
+    gather(tree, number_);
+    std::sort(number_.begin() + first, number_.end());
+  } else {
+    copyTree(tree.m_left);
+    nodes_[index].right = std::uint32_t(nodes_.size());
+    copyTree(tree.m_right);
+  }
+  nodes_[index].count = std::uint32_t(number_.size()) - first;
+}
+
+TriangleTree::Far TriangleTree::sumOf(const Node& node) const {
+  Far far;
+  Vec3 middle = Vec3::Zero();
+  const auto triangles = std::span(triangles_).subspan(node.first, node.count);
+  for (const Triangle& t : triangles) {
+    const double a = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    far.area += a;
+    far.centre += a * (t[0] + t[1] + t[2]) / 3;
+    middle += (t[0] + t[1] + t[2]) / (3 * double(node.count));
+  }
+  far.centre = far.area > 0 ? Vec3(far.centre / far.area) : middle;
+  for (const Triangle& t : triangles) {
     const Vec3 normal = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
     const Vec3 d[3] = {t[0] - far.centre, t[1] - far.centre, t[2] - far.centre};
     const Vec3 sum = d[0] + d[1] + d[2];
@@ -162,27 +196,42 @@ TriangleTree::Far TriangleTree::farField(std::span<const std::uint32_t> triangle
   return far;
 }
 
-void TriangleTree::gather(std::uint32_t index, std::vector<std::uint32_t>& below) {
-  const std::size_t first = below.size();
-  Node& node = nodes_[index];
-  node.lo = Vec3::Constant(kInfinity);
-  node.hi = -node.lo;
-  if (node.triangle != kNone) {
-    below.push_back(node.triangle);
-    for (const Vec3& p : triangles_[node.triangle]) {
-      node.lo = node.lo.cwiseMin(p);
-      node.hi = node.hi.cwiseMax(p);
+/// Moments about another centre: d + e for d. Exact but for rounding.
+TriangleTree::Far TriangleTree::joined(const Far& a, const Far& b, const Node& node) const {
+  Far far;
+  far.area = a.area + b.area;
+  far.centre = far.area > 0 ? Vec3((a.area * a.centre + b.area * b.centre) / far.area)
+                            : Vec3(0.5 * (a.centre + b.centre));
+  const Vec3 farthest = (node.hi - far.centre).cwiseMax(far.centre - node.lo);
+  for (const Far* part : {&a, &b}) {
+    const Vec3 e = part->centre - far.centre;
+    far.radius = std::max(far.radius, e.norm() + part->radius);
+    far.dipole += part->dipole;
+    far.moment += part->moment + e * part->dipole.transpose();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 first = part->moment.col(k);
+      far.second[std::size_t(k)] += part->second[std::size_t(k)] + first * e.transpose() +
+                                    e * first.transpose() + part->dipole[k] * (e * e.transpose());
     }
-    return;
   }
-  for (std::uint32_t child : {node.left, node.right}) {
-    gather(child, below);
-    node.lo = node.lo.cwiseMin(nodes_[child].lo);
-    node.hi = node.hi.cwiseMax(nodes_[child].hi);
+  far.radius = std::min(far.radius, farthest.norm());
+  return far;
+}
+
+void TriangleTree::findMoments() const {
+  std::vector<std::uint32_t>& of = moments_->of;
+  of.assign(nodes_.size(), kNone);
+  std::uint32_t count = 0;
+  for (std::size_t n = nodes_.size(); n-- > 0;)
+    if (nodes_[n].count >= kFewTriangles) of[n] = count++;
+  moments_->far.resize(count);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    if (of[n] == kNone) continue;
+    const std::uint32_t left = of[n + 1], right = of[nodes_[n].right];
+    const bool known = left != kNone && right != kNone;
+    moments_->far[of[n]] =
+        known ? joined(moments_->far[left], moments_->far[right], nodes_[n]) : sumOf(nodes_[n]);
   }
-  if (below.size() - first < kFewTriangles) return;
-  node.far = std::uint32_t(far_.size());
-  far_.push_back(farField(std::span(below).subspan(first)));
 }
 
 TriangleTree::Hit TriangleTree::nearest(const Vec3& p) const {
@@ -199,19 +248,22 @@ TriangleTree::Hit TriangleTree::nearest(const Vec3& p) const {
     const auto [distance2, index] = stack[--top];
     if (distance2 > best2) continue;
     const Node& node = nodes_[index];
-    if (node.triangle != kNone) {
-      const Vec3 b = nearestOnTriangle(triangles_[node.triangle], p);
-      const double d2 = (point(triangles_[node.triangle], b) - p).squaredNorm();
-      if (d2 < best2 || (d2 == best2 && node.triangle < best.triangle)) {
-        best2 = d2;
-        best = {node.triangle, b, 0};
+    if (node.right == kNone) {
+      for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
+        const Vec3 b = nearestOnTriangle(triangles_[t], p);
+        const double d2 = (point(triangles_[t], b) - p).squaredNorm();
+        if (d2 < best2 || (d2 == best2 && number_[t] < best.triangle)) {
+          best2 = d2;
+          best = {number_[t], b, 0};
+        }
       }
       continue;
     }
-    const double l = boxDistance2(nodes_[node.left].lo, nodes_[node.left].hi, p);
+    const std::uint32_t left = index + 1;
+    const double l = boxDistance2(nodes_[left].lo, nodes_[left].hi, p);
     const double r = boxDistance2(nodes_[node.right].lo, nodes_[node.right].hi, p);
-    stack[top++] = l <= r ? std::pair{r, node.right} : std::pair{l, node.left};
-    stack[top++] = l <= r ? std::pair{l, node.left} : std::pair{r, node.right};
+    stack[top++] = l <= r ? std::pair{r, node.right} : std::pair{l, left};
+    stack[top++] = l <= r ? std::pair{l, left} : std::pair{r, node.right};
   }
   best.distance = std::sqrt(best2);
   return best;
@@ -226,40 +278,46 @@ TriangleTree::Hit TriangleTree::intersect(const Vec3& origin, const Vec3& direct
   std::size_t top = 0;
   stack[top++] = 0;
   while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
+    const std::uint32_t index = stack[--top];
+    const Node& node = nodes_[index];
     if (boxEntry(node.lo, node.hi, origin, inverse, best.distance) == kInfinity) continue;
-    if (node.triangle == kNone) {
+    if (node.right != kNone) {
       stack[top++] = node.right;
-      stack[top++] = node.left;
+      stack[top++] = index + 1;
       continue;
     }
-    Vec3 b;
-    double t = 0;
-    if (!rayTriangle(triangles_[node.triangle], origin, direction, b, t) || !(t > 0)) continue;
-    if (t < best.distance || (t == best.distance && node.triangle < best.triangle))
-      best = {node.triangle, b, t};
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      Vec3 b;
+      double t = 0;
+      if (!rayTriangle(triangles_[i], origin, direction, b, t) || !(t > 0)) continue;
+      if (t < best.distance || (t == best.distance && number_[i] < best.triangle)) best = {number_[i], b, t};
+    }
   }
   return best;
 }
 
 double TriangleTree::windingNumber(const Vec3& p, double beta) const {
   if (empty()) return 0;
+  std::call_once(moments_->found, [this] { findMoments(); });
   double sum = 0;
   std::array<std::uint32_t, kMaxStack> stack;
   std::size_t top = 0;
   stack[top++] = 0;
   while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (node.triangle != kNone) {
-      sum += solidAngle(triangles_[node.triangle], p);
+    const std::uint32_t index = stack[--top];
+    const Node& node = nodes_[index];
+    if (node.right == kNone) {
+      for (std::uint32_t t = node.first; t < node.first + node.count; ++t)
+        sum += solidAngle(triangles_[t], p);
       continue;
     }
-    const Far* far = node.far == kNone ? nullptr : &far_[node.far];
+    const std::uint32_t of = moments_->of[index];
+    const Far* far = of == kNone ? nullptr : &moments_->far[of];
     const Vec3 r = far == nullptr ? p : Vec3(far->centre - p);
     const double d2 = r.squaredNorm();
     if (far == nullptr || d2 <= beta * beta * far->radius * far->radius) {
       stack[top++] = node.right;
-      stack[top++] = node.left;
+      stack[top++] = index + 1;
       continue;
     }
     const double d = std::sqrt(d2), inverse3 = 1 / (d2 * d) / (4 * std::numbers::pi);

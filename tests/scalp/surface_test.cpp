@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scalp/triangle_tree.h"
 #include "shapes.h"
 
 namespace coif {
@@ -158,6 +159,46 @@ TEST(Surface, RayLengthIsInUnitsOfTheDirection) {
   Vec2 uv;
   ASSERT_TRUE(surface.uv(hit, uv));
   EXPECT_NEAR((uv - Vec2(0.3, 0.4)).norm(), 0, 1e-14);
+}
+
+/// More triangles than one thread builds: parts of the tree are made side by side.
+TEST(Surface, LargeTreesAnswerAsEveryTriangleDoes) {
+  const PolygonMesh mesh = sphere(6);
+  Context one, four;
+  one.threads = 1, four.threads = 4;
+  const auto a = Surface::create(mesh, one), b = Surface::create(mesh, four);
+  ASSERT_TRUE(a.ok() && b.ok());
+  ASSERT_GT(a->triangleCount(), 70000u);
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const Vec3 p = randomPoint(i, 1.5);
+    const SurfacePoint found = a->nearest(p), again = b->nearest(p);
+    EXPECT_EQ(found.triangle, again.triangle);
+    EXPECT_EQ(found.position, again.position);
+    double least = 1e9;
+    for (std::uint32_t t = 0; t < a->triangleCount(); ++t) {
+      const auto v = a->triangleVertices(t);
+      const TriangleTree::Triangle corners{mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
+      const Vec3 w = nearestOnTriangle(corners, p);
+      least = std::min(least, (w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] - p).norm());
+    }
+    EXPECT_NEAR(found.distance, least, 1e-14);
+    EXPECT_EQ(a->windingNumber(p), b->windingNumber(p));
+  }
+}
+
+TEST(Surface, SaysWhatItDoesAndStopsWhenTold) {
+  const PolygonMesh mesh = sphere(4);
+  std::vector<std::string> steps;
+  std::atomic<bool> cancel = false;
+  Context context;
+  context.progress = [&](std::string_view what, double) { steps.emplace_back(what); };
+  ASSERT_TRUE(Surface::create(mesh, context).ok());
+  EXPECT_GE(steps.size(), 3u);
+  context.cancel = &cancel;
+  context.progress = [&](std::string_view, double fraction) { cancel = fraction >= 0.2; };
+  const auto stopped = Surface::create(mesh, context);
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_EQ(stopped.error().code, ErrorCode::Cancelled);
 }
 
 TEST(Surface, ConcavePolygonsAreCoveredOnce) {

@@ -1,4 +1,4 @@
-// Distance, inside/outside and nearest-point queries on a head (libigl inside).
+// Distance, inside/outside and nearest-point queries on a head.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <span>
 
 #include "coif/base/context.h"
+#include "coif/base/result.h"
 #include "coif/scalp/polygon_mesh.h"
 
 namespace coif {
@@ -30,6 +31,8 @@ class Surface {
  public:
   /// Triangulates faces (fan from the first corner; concave faces by ear clipping in the Newell plane).
   explicit Surface(const PolygonMesh& mesh);
+  /// The same with progress, for large heads. Errors: Cancelled.
+  static Result<Surface> create(PolygonMesh mesh, const Context& context);
   ~Surface();
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
@@ -59,6 +62,7 @@ class Surface {
 
  private:
   struct Impl;
+  explicit Surface(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
