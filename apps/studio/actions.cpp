@@ -61,6 +61,14 @@ std::vector<Action> Studio::fileActions() {
        ask(PathUse::Turntable),
        {},
        noDocument},
+      {"cancel",
+       "Cancel what runs",
+       "File",
+       "Ctrl+.",
+       "Stops a command, an opening or an export that takes its time.",
+       [this] { job_.cancel(); },
+       {},
+       [this] { return job_.busy() ? std::string() : std::string("nothing runs"); }},
       {"quit", "Quit", "File", "Ctrl+Q", "Ends the studio.", [this] { mayClose(); }},
   };
 }

@@ -21,18 +21,30 @@ fs::path autosaveFolder() {
   return stateFolder() / "autosave";
 }
 
-Result<Scene> sceneOf(const fs::path& path, const std::string& style, std::shared_ptr<const Surface>& head,
+/// What is reported of a part goes from `from` to `to` of the whole.
+Context part(const Context& whole, double from, double to) {
+  Context context = whole;
+  context.progress = [&whole, from, to](std::string_view what, double fraction) {
+    whole.report(what, from + fraction * (to - from));
+  };
+  return context;
+}
+
+/// A head's own document; `head` is read on the way.
+Result<Scene> sceneOf(const fs::path& path, const std::string& style, LoadedHead& head,
                       const Context& context) {
   if (path.extension() == ".coif") return loadScene(path);
-  COIF_ASSIGN(PolygonMesh mesh, loadPolygonMesh(path));
-  head = std::make_shared<Surface>(mesh);
-  COIF_ASSIGN(const Region region, automaticCap(*head));
+  COIF_ASSIGN(head, loadHead(fs::absolute(path), part(context, 0, 0.4)));
+  const Surface& surface = *head.surface;
+  context.report("finding the scalp", 0.4);
+  COIF_ASSIGN(const Region region, automaticCap(surface));
+  if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the head was not opened");
   CageOptions options;
   if (!style.empty()) options.count = int(suggestedCageCount(style));
-  COIF_ASSIGN(const Cage cage, buildCage(head->mesh(), *head, region, options, context));
+  COIF_ASSIGN(const Cage cage, buildCage(surface.mesh(), surface, region, options, part(context, 0.55, 1)));
   COIF_ASSIGN(Hairstyle hairstyle,
-              style.empty() ? bareRoots(cage) : modelHairstyle(style, cage, *head, context));
-  COIF_ASSIGN(Scene scene, sceneOnHead(path, mesh, cage, std::move(hairstyle)));
+              style.empty() ? bareRoots(cage) : modelHairstyle(style, cage, surface, context));
+  COIF_ASSIGN(Scene scene, sceneOnHead(path, surface.mesh(), cage, std::move(hairstyle)));
   scene.name = style.empty() ? path.stem().string() : style;
   return scene;
 }
@@ -53,13 +65,12 @@ Document::Document(Scene scene) : editor(std::move(scene)) {
 
 Result<std::unique_ptr<Document>> Document::open(const fs::path& path, const std::string& style,
                                                  const Context& context) {
-  std::shared_ptr<const Surface> head;
+  LoadedHead head;
   auto made = sceneOf(path, style, head, context);
   if (!made.ok()) return inFile(made.error(), path.string());
   std::unique_ptr<Document> document(new Document(std::move(*made)));
   if (path.extension() == ".coif") document->path = path;
-  document->head = head;
-  document->readHead();
+  COIF_TRY(document->takeHead(std::move(head), context));
   return document;
 }
 
@@ -80,16 +91,17 @@ Result<std::unique_ptr<Document>> Document::openExample(const Context& context) 
   return open(head, "bob", context);
 }
 
-void Document::readHead() {
-  if (!head && !editor.scene().head.path.empty()) {
-    auto mesh = loadPolygonMesh(editor.scene().headPath());
-    if (mesh.ok()) {
-      head = std::make_shared<Surface>(std::move(*mesh));
-    } else {
-      headProblem = "the head could not be read: " + mesh.error().text();
-    }
+Status Document::takeHead(LoadedHead read, const Context& context) {
+  head_ = std::move(read);
+  if (!head_.surface && !editor.scene().head.path.empty()) {
+    auto loaded = loadHead(editor.scene().headPath(), context);
+    if (!loaded.ok() && loaded.error().code == ErrorCode::Cancelled) return loaded.error();
+    if (loaded.ok()) head_ = std::move(*loaded);
+    if (!loaded.ok()) headProblem = "the head could not be read: " + loaded.error().text();
   }
-  editor.setHead(head.get());
+  if (head_.surface) headBox_ = bounds(head_.surface->mesh().positions);
+  editor.setHead(head_.surface.get());
+  return {};
 }
 
 std::string Document::title() const {
@@ -149,8 +161,8 @@ std::vector<fs::path> Document::leftBehind() {
   return paths;
 }
 
-Result<std::unique_ptr<Document>> Document::recover(const fs::path& autosave) {
-  COIF_ASSIGN(std::unique_ptr<Document> document, open(autosave, "", {}));
+Result<std::unique_ptr<Document>> Document::recover(const fs::path& autosave, const Context& context) {
+  COIF_ASSIGN(std::unique_ptr<Document> document, open(autosave, "", context));
   document->path.clear();
   if (const auto bytes = readFile(autosave.string() + ".json"); bytes.ok()) {
     const auto json =

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "coif/scene/editor.h"
+#include "coif/scene/evaluate.h"
 
 namespace coif::studio {
 
@@ -24,9 +25,11 @@ class Document {
   static Result<std::unique_ptr<Document>> openExample(const Context& context);
 
   Editor editor;
-  std::shared_ptr<const Surface> head;  ///< null when it could not be read
-  std::string headProblem;              ///< why not
-  std::filesystem::path path;           ///< of the .coif file; empty until saved
+  std::shared_ptr<const Surface> head() const { return head_.surface; }  ///< null when it could not be read
+  const LoadedHead& loadedHead() const { return head_; }
+  const Box& headBox() const { return headBox_; }  ///< where there is a head
+  std::string headProblem;                         ///< why there is none
+  std::filesystem::path path;                      ///< of the .coif file; empty until saved
 
   std::string title() const;
   Status save(const std::filesystem::path& to);
@@ -38,13 +41,17 @@ class Document {
   /// Autosaves that a crash left behind, newest first.
   static std::vector<std::filesystem::path> leftBehind();
   /// Opens an autosave as what it was a copy of; it stays modified until saved.
-  static Result<std::unique_ptr<Document>> recover(const std::filesystem::path& autosave);
+  static Result<std::unique_ptr<Document>> recover(const std::filesystem::path& autosave,
+                                                   const Context& context);
 
  private:
   explicit Document(Scene scene);
-  void readHead();
+  /// `read`: the head, where it was read already. Errors: Cancelled.
+  Status takeHead(LoadedHead read, const Context& context);
   std::filesystem::path autosavePath() const;
 
+  LoadedHead head_;
+  Box headBox_;
   std::string key_;  // names this document's autosave
   std::uint64_t autosavedRevision_ = 0;
 };

@@ -90,7 +90,7 @@ void Studio::begin(const std::string& command) {
   const Editor& editor = document_->editor;
   if (const auto hand = transformOf(command); hand && view_.screen()) {
     if (editor.state().selection.empty()) return say("select something first", true);
-    tool_ = std::make_unique<TransformTool>(*hand, editor, view_, tools_, document_->head.get());
+    tool_ = std::make_unique<TransformTool>(*hand, editor, view_, tools_, document_->head().get());
   } else if (isOperation(info) && view_.screen()) {
     if (const auto attempt = editor.attempt(command, arguments); !attempt.ok())
       return say(attempt.error().text(), true);
@@ -189,7 +189,7 @@ bool Studio::takeTools() {
     const auto handle = gizmoAt(*middle).at(view_.mouse());
     if (handle && ImGui::IsMouseClicked(0)) {
       tool_ = std::make_unique<TransformTool>(tools_.hand, document_->editor, view_, tools_,
-                                              document_->head.get(), *handle);
+                                              document_->head().get(), *handle);
       return true;
     }
   }
@@ -206,7 +206,7 @@ bool Studio::strandsInPicture() const {
 }
 
 bool Studio::headInPicture() const {
-  return view_.settings.headStyle == HeadStyle::Shaded || !document_->head || !canPaintHead(*document_->head);
+  return view_.settings.headStyle == HeadStyle::Shaded || !document_->head() || !canPaintHead(*document_->head());
 }
 
 bool Studio::turnTable() {
@@ -223,9 +223,10 @@ void Studio::drawUnderView() {
   const ImVec2 from = view_.origin(), size = view_.size();
   paintBackdrop(view_, settings_.lightTheme);
   list.PushClipRect(from, {from.x + size.x, from.y + size.y});
-  const Surface* head = document_->head.get();
+  const Surface* head = document_->head().get();
   if (view_.settings.grid) {
-    std::vector<Vec3> points = head != nullptr ? head->mesh().positions : std::vector<Vec3>();
+    std::vector<Vec3> points;
+    if (head != nullptr) points = {document_->headBox().lo, document_->headBox().hi};
     for (const HairVertex& vertex : document_->editor.mesh().vertices()) points.push_back(vertex.position);
     if (!points.empty()) paintGrid(view_, bounds(points), 10 * tools_.snap.step);
   }

@@ -10,7 +10,7 @@ namespace coif::studio {
 
 MotionInput Studio::motionInput() const {
   const Scene& scene = document_->editor.scene();
-  return {scene.hairMesh, scene.dynamics, headMove_, document_->head, scene.metersPerUnit, scene.upAxis};
+  return {scene.hairMesh, scene.dynamics, headMove_, document_->head(), scene.metersPerUnit, scene.upAxis};
 }
 
 void Studio::playMotion() {
@@ -98,8 +98,10 @@ void Studio::bakeMotion(const std::filesystem::path& path) {
   auto poses = headPoses(headMove_, scene->hairMesh, scene->upAxis, what.frames, what.framesPerSecond);
   if (!poses.ok()) return say(poses.error().text(), true);
   if (headMove_.move != HeadMove::Still) what.motion.poses = std::move(*poses);
+  const LoadedHead head = document_->loadedHead();
   job_.start("Baking " + path.filename().string(), [=, this](const Context& context) -> Job::Finish {
     Evaluation evaluation;
+    evaluation.holdHead(head);
     std::string problem, note;
     if (cache) {
       if (const auto done = evaluation.simulate(*scene, what, context); !done.ok())

@@ -93,8 +93,9 @@ void Studio::dragEdge(const char* name, const ImVec2& at, float height, float& w
   ImGui::PopStyleVar(3);
 }
 
-bool Studio::header(const char* label) {
-  ImGui::SetNextItemOpen(settings_.open[label], ImGuiCond_Once);
+bool Studio::header(const char* label, bool opens) {
+  if (opens) settings_.open[label] = true;
+  ImGui::SetNextItemOpen(settings_.open[label], opens ? ImGuiCond_Always : ImGuiCond_Once);
   const bool open = ImGui::CollapsingHeader(label);
   if (ImGui::IsItemToggledOpen()) {
     settings_.open[label] = open;

@@ -9,9 +9,11 @@ namespace coif::studio {
 namespace {
 
 /// What decides which strands grow where, but for where the vertices are.
-std::uint64_t topologyHash(const Scene& scene) {
+std::uint64_t topologyHash(const PictureRequest& request) {
+  const Scene& scene = *request.scene;
   const HairMesh& mesh = scene.hairMesh;
   std::uint64_t hash = hashCombine(mesh.vertices().size(), mesh.bundles().size());
+  hash = hashCombine(hash, request.loaded.hash);
   const StrandSettings& s = scene.strands;
   for (std::uint64_t value : {std::uint64_t(s.count), std::uint64_t(s.points), s.seed, std::uint64_t(s.knots),
                               std::uint64_t(s.width * 1e9), std::uint64_t(s.tipWidth * 1e9)}) {
@@ -26,6 +28,13 @@ std::uint64_t topologyHash(const Scene& scene) {
     }
   }
   return hash;
+}
+
+std::vector<Vec3> positionsOf(const PictureRequest& request) {
+  if (!request.moved.empty()) return request.moved;
+  std::vector<Vec3> positions;
+  for (const HairVertex& vertex : request.scene->hairMesh.vertices()) positions.push_back(vertex.position);
+  return positions;
 }
 
 }  // namespace
@@ -97,8 +106,8 @@ void PictureWorker::forgetPreview() {
   session_.reset();
   preview_.reset();
   shownHead_.reset();
-  headShown_ = hairShown_ = false;
-  shownTopology_ = 0;
+  headShown_ = false;
+  shown_.reset();
 }
 
 PictureAnswer PictureWorker::answer(const PictureRequest& request) {
@@ -118,38 +127,64 @@ PictureAnswer PictureWorker::answer(const PictureRequest& request) {
   return out;
 }
 
+/// Strands that only moved follow on the GPU, with the style that was planned for them. A fine picture shows
+/// what would be exported: all of them, planned on the mesh at rest.
 Status PictureWorker::updateHair(const PictureRequest& request, const Context& context) {
-  if (!request.strands || request.scene->hairMesh.layerCount() < 2) {
-    if (std::exchange(hairShown_, false)) session_->clearHair();
-    shownTopology_ = 0;
+  const Scene& scene = *request.scene;
+  if (!request.strands || scene.hairMesh.layerCount() < 2) {
+    if (shown_) session_->clearHair();
+    shown_.reset();
     return {};
   }
-  if (hairShown_ && request.revision == shownRevision_) return {};
-  const std::uint64_t topology = topologyHash(*request.scene);
-  if (!request.scene->styles.empty()) {
-    const Trace::Span span(trace_, "style strands");
-    Scene shown = *request.scene;
-    shown.placedHash = meshHash(shown.hairMesh);  // as it is shown without a style: where it stands
-    COIF_ASSIGN(const StrandSet* styled, evaluation_.strands(shown, context));
-    COIF_TRY(session_->setStrands(*styled, context));
-    hairShown_ = true;
-    shownTopology_ = 0;
-  } else if (hairShown_ && topology == shownTopology_) {
-    std::vector<Vec3> positions;
-    for (const HairVertex& vertex : request.scene->hairMesh.vertices()) positions.push_back(vertex.position);
+  const std::uint64_t topology = topologyHash(request);
+  const bool same = shown_ && shown_->topology == topology && shown_->styles == scene.styles;
+  const bool good = same && (request.draft || scene.styles.empty() ||
+                             (shown_->whole && shown_->planned == meshHash(scene.hairMesh)));
+  if (good && request.revision == shownRevision_) return {};
+  if (!good) COIF_TRY(growHair(request, topology, context));
+  if (good || !request.moved.empty()) {
     const Trace::Span span(trace_, "move strands");
-    COIF_TRY(session_->moveHair(positions, context));
-  } else {
-    const Trace::Span span(trace_, "grow strands");
-    Scene roots = *request.scene;  // roots and widths are all that the session wants
-    roots.strands.points = 2, roots.strands.tolerance = 0;
-    COIF_ASSIGN(const StrandSet* strands, evaluation_.grownStrands(roots, context));
-    COIF_TRY(session_->setHair(request.scene->hairMesh, *strands, request.scene->strands.knots,
-                               request.scene->strands.points, context));
-    hairShown_ = true;
-    shownTopology_ = topology;
+    COIF_TRY(session_->moveHair(positionsOf(request), context));
   }
   shownRevision_ = request.revision;
+  return {};
+}
+
+/// A draft of a new style takes a few strands, the first in their order, as wide as all together.
+Status PictureWorker::growHair(const PictureRequest& request, std::uint64_t topology,
+                               const Context& context) {
+  Trace::Span span(trace_, "grow strands");
+  constexpr std::size_t kFewest = 4096;
+  Scene scene = *request.scene;
+  scene.placedHash = meshHash(scene.hairMesh);  // it is shown where it stands
+  const bool styled = !scene.styles.empty();
+  StrandSettings& s = scene.strands;
+  const std::size_t count = s.count, points = std::max<std::size_t>(s.points, 2);
+  s.tolerance = 0;            // a style is laid on fixed points
+  if (!styled) s.points = 2;  // roots and widths are all that the session wants
+  if (styled && request.draft) {
+    std::size_t few = kFewest;
+    while (few < count && few * (points - 1) < 2 * draftSegments_) few *= 2;
+    s.count = std::min(few, count);
+  }
+  shown_.reset();
+  Evaluation& evaluation = s.count == count ? evaluation_ : drafts_;
+  COIF_ASSIGN(const StrandSet* grown, evaluation.grownStrands(scene, context));
+  StrandSet widened;
+  if (s.count != count) {
+    widened = *grown;
+    for (float& width : widened.widths) width *= float(double(count) / double(s.count));
+  }
+  COIF_TRY(session_->setHair(scene.hairMesh, s.count == count ? *grown : widened, s.knots,
+                             std::uint32_t(points), context));
+  if (styled) {
+    const Trace::Span planning(trace_, "plan style");
+    COIF_ASSIGN([[maybe_unused]] const StrandSet* strands, evaluation.strands(scene, context));
+    const StylePlan* plan = evaluation.stylePlan();
+    COIF_TRY(session_->setStyle(plan != nullptr ? plan->view() : StrandStyle{}, context));
+  }
+  span.note("strands", double(s.count));
+  shown_ = Shown{topology, scene.placedHash, scene.styles, s.count == count};
   return {};
 }
 
@@ -165,17 +200,20 @@ Status PictureWorker::show(const PictureRequest& request, PictureAnswer& out) {
   Context context;
   context.cancel = &cancel_;
   COIF_TRY(openPreview());
-  if (request.head && request.surface && (!headShown_ || shownHead_ != request.surface)) {
-    COIF_TRY(session_->setHead(request.surface->mesh()));
-    headShown_ = true, shownHead_ = request.surface;
-  } else if (headShown_ && !(request.head && request.surface)) {
+  if (request.head && request.loaded.surface && (!headShown_ || shownHead_ != request.loaded.surface)) {
+    COIF_TRY(session_->setHead(request.loaded.surface->mesh()));
+    headShown_ = true, shownHead_ = request.loaded.surface;
+  } else if (headShown_ && !(request.head && request.loaded.surface)) {
     session_->clearHead();
     headShown_ = false;
   }
-  evaluation_.clearReports();
+  for (Evaluation* evaluation : {&evaluation_, &drafts_}) {
+    evaluation->clearReports();
+    evaluation->holdHead(request.loaded);
+  }
   const Status hair = updateHair(request, context);
   if (!hair.ok()) {
-    hairShown_ = false, shownTopology_ = 0;
+    shown_.reset();
     session_->clearHair();
     if (hair.error().code == ErrorCode::Cancelled) return hair;
   }
@@ -195,13 +233,14 @@ Status PictureWorker::show(const PictureRequest& request, PictureAnswer& out) {
   COIF_ASSIGN(Picture picture, session_->render(options, context));
   for (const StageReport& stage : picture.stages) span.note(stage.name + " ms", 1e3 * stage.seconds);
   span.note("strand bytes", double(picture.uploaded.strands));
+  span.note("style bytes", double(picture.uploaded.style));
   span.note("hair mesh bytes", double(picture.uploaded.hairMesh));
   span.note("strands", double(picture.strandsDrawn));
   span.note("segments", double(picture.segmentsDrawn));
   if (request.draft) adaptDrafts(picture.seconds);
   out.image = std::move(picture.image);
   out.strandsDrawn = picture.strandsDrawn;
-  out.stages = evaluation_.reports();
+  out.stages = evaluation_.reports().empty() ? drafts_.reports() : evaluation_.reports();
   out.stages.insert(out.stages.end(), picture.stages.begin(), picture.stages.end());
   return hair;
 }

@@ -18,13 +18,14 @@ namespace coif::studio {
 
 struct PictureRequest {
   std::shared_ptr<const Scene> scene;  ///< with its internal vertices placed
-  std::uint64_t revision = 0;          ///< of the scene: the same one need not be looked at again
+  std::vector<Vec3> moved;             ///< where its vertices are now; empty: where they are in the scene
+  std::uint64_t revision = 0;          ///< of the scene and where it is: the same need not be looked at again
   Camera camera;
   Lights lights;
   PreviewOptions options;
   bool strands = true, head = true;
   bool draft = false;  ///< made to its end, so that something is seen while the mouse moves on
-  std::shared_ptr<const Surface> surface;  ///< the head; null: none
+  LoadedHead loaded;   ///< the head
 };
 
 struct PictureAnswer {
@@ -58,6 +59,7 @@ class PictureWorker {
   Status show(const PictureRequest& request, PictureAnswer& out);
   void adaptDrafts(double seconds);
   Status updateHair(const PictureRequest& request, const Context& context);
+  Status growHair(const PictureRequest& request, std::uint64_t topology, const Context& context);
 
   std::function<void()> ready_;
   Trace& trace_;
@@ -71,12 +73,19 @@ class PictureWorker {
   // The worker's own; only its thread touches them.
   std::optional<Preview> preview_;
   std::unique_ptr<PreviewSession> session_;
-  Evaluation evaluation_;
+  Evaluation evaluation_, drafts_;  ///< of all strands, and of the few that a draft shows
+  /// The strands on the GPU: which, how styled, and on which mesh that was planned.
+  struct Shown {
+    std::uint64_t topology = 0, planned = 0;
+    StyleStack styles;
+    bool whole = true;  ///< all of them
+  };
+  std::optional<Shown> shown_;
   std::shared_ptr<const Surface> shownHead_;
   std::size_t draftSegments_ = 15000;  // follows the machine
   bool anythingShown_ = false;
-  bool headShown_ = false, hairShown_ = false;
-  std::uint64_t shownRevision_ = 0, shownTopology_ = 0;
+  bool headShown_ = false;
+  std::uint64_t shownRevision_ = 0;
 
   std::thread thread_;
 };

@@ -15,7 +15,7 @@
 namespace coif::studio {
 namespace {
 
-constexpr double kAutosaveSeconds = 30, kFineAfterSeconds = 0.35, kNoteSeconds = 4;
+constexpr double kAutosaveSeconds = 30, kFineAfterSeconds = 0.35, kNoteSeconds = 4, kTellAfterSeconds = 0.5;
 constexpr double kPatienceSeconds = 0.2;  // for a command, before the window goes on without it
 
 /// 1, 2 or 5 times a power of ten, about as large.
@@ -132,8 +132,8 @@ void Studio::openPath(const std::filesystem::path& path, const std::string& styl
 }
 
 void Studio::recover(const std::filesystem::path& autosave) {
-  job_.start("Recovering", [this, autosave](const Context&) -> Job::Finish {
-    auto made = std::make_shared<Result<std::unique_ptr<Document>>>(Document::recover(autosave));
+  job_.start("Recovering", [this, autosave](const Context& context) -> Job::Finish {
+    auto made = std::make_shared<Result<std::unique_ptr<Document>>>(Document::recover(autosave, context));
     return [this, made] { made->ok() ? adopt(std::move(**made)) : say(made->error().text(), true); };
   });
 }
@@ -186,9 +186,11 @@ void Studio::exportTo(const std::filesystem::path& path) {
   auto scene = std::make_shared<const Scene>(document_->editor.scene());
   StrandExport what;
   what.mesh = exportMesh_;
+  const LoadedHead head = document_->loadedHead();
   job_.start("Exporting " + path.filename().string(),
-             [this, scene, path, what](const Context& context) -> Job::Finish {
+             [this, scene, path, what, head](const Context& context) -> Job::Finish {
                Evaluation evaluation;
+               evaluation.holdHead(head);
                const auto report = evaluation.exportTo(*scene, path, what, context);
                const std::string problem = report.ok() ? "" : report.error().text();
                return [this, path, problem] {
@@ -233,13 +235,14 @@ PictureRequest Studio::pictureRequest(bool fine) const {
   const LookSettings look = shownLook();
   PictureRequest request;
   auto scene = std::make_shared<Scene>(editor.scene());
-  if (attempt_ || playedMesh_) scene->hairMesh = shownMesh();
+  if (attempt_) scene->hairMesh = *attempt_;
+  if (!attempt_ && played_) request.moved = played_->positions;
   scene->styles = shownStyles();
   request.revision = pendingStyles_ ? hashCombine(shownRevision(), pendingStylesNumber_) : shownRevision();
   request.scene = std::move(scene);
   request.camera = played_ ? cameraFromHead(view_.camera, played_->pose) : view_.camera;
   request.draft = !fine;
-  request.surface = document_->head;
+  request.loaded = document_->loadedHead();
   request.strands = strandsInPicture();
   request.head = s.showHead && headInPicture();
   request.lights = lightsOf(look.light, editor.scene().upAxis);
@@ -310,6 +313,13 @@ void Studio::takeKeys() {
   }
 }
 
+/// With how far it got what takes its time, as nobody may be looking at the window itself.
+std::string Studio::title() const {
+  std::string text = document_ ? document_->title() + " – Coif Studio" : "Coif Studio";
+  if (!job_.busy() || job_.seconds() < kTellAfterSeconds) return text;
+  return std::to_string(int(100 * std::clamp(job_.fraction(), 0.0, 1.0))) + " % – " + text;
+}
+
 bool Studio::frame() {
   Trace::Span span(trace_, "frame");
   span.note("drawn before", double(window_.framesDrawn()));
@@ -325,7 +335,7 @@ bool Studio::frame() {
   if (document_) {
     const auto project = [&] {
       const Trace::Span mesh(trace_, "project mesh");
-      view_.update(shownMesh(), shownRevision(), document_->editor.state(), document_->head.get(),
+      view_.update(shownMesh(), shownRevision(), document_->editor.state(), document_->head().get(),
                    tool_ != nullptr || brush_.stroking());
     };
     project();
@@ -353,7 +363,7 @@ bool Studio::frame() {
   drawKeyMap();
   drawExportDialog();
   autosave();
-  window_.setTitle((document_ ? document_->title() + " – " : std::string()) + "Coif Studio");
+  window_.setTitle(title());
   return !quit_;
 }
 

@@ -139,6 +139,8 @@ class Studio {
   void drawOperatorList();
   void drawMaskButtons(const StyleOperator& op);
   void addOperator(const std::string& kind);
+  void chooseOperator(int by);
+  void moveOperator(int by);
   std::string chosenOperator() const;  ///< its name; empty: the stack is
   const StyleStack& shownStyles() const;
   void followMask();
@@ -155,8 +157,10 @@ class Studio {
   void drawPythonPanel();
   void drawStatusLine();
   void dragEdge(const char* name, const ImVec2& at, float height, float& width, float sign, float room);
-  bool header(const char* label);  ///< of a panel; open or not as in the last run
+  /// Of a panel; open or not as in the last run, or from now on.
+  bool header(const char* label, bool opens = false);
   void drawProgress();
+  std::string title() const;
 
   // Python (scripting.cpp, console_panel.cpp).
   struct Request {
@@ -235,6 +239,7 @@ class Studio {
   std::optional<StyleStack> pendingStyles_;
   std::uint64_t pendingStylesNumber_ = 0;
   std::string chosenOperator_;
+  bool nameAsked_ = false;
   std::optional<StyleMask> paintedMask_;  // of the stroke that goes on
 
   std::string message_;

@@ -3,6 +3,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "coif/style/style_kinds.h"
 #include "ramp_widget.h"
@@ -70,6 +71,9 @@ std::string Studio::chosenOperator() const {
 std::vector<Action> Studio::styleActions() {
   std::vector<Action> list;
   const auto noDocument = [this] { return document_ ? std::string() : std::string("no document is open"); };
+  const auto noOperator = [this] {
+    return chosenOperator().empty() ? "add an operator first" : std::string();
+  };
   for (const StyleKind& kind : styleKinds()) {
     list.push_back({"add_" + kind.name,
                     "Add " + kind.label,
@@ -80,14 +84,44 @@ std::vector<Action> Studio::styleActions() {
                     {},
                     noDocument});
   }
+  const auto add = [&](const char* name, const char* label, const char* key, const char* help,
+                       std::function<void()> act) {
+    list.push_back({name, label, "Style", key, help, std::move(act), {}, noOperator});
+  };
+  add("operator_above", "Choose the one above", "Ctrl+Up", "The panel shows the operator above.",
+      [this] { chooseOperator(-1); });
+  add("operator_below", "Choose the one below", "Ctrl+Down", "The panel shows the operator below.",
+      [this] { chooseOperator(1); });
+  add("operator_earlier", "Move up", "Ctrl+Shift+Up", "The chosen operator acts earlier.",
+      [this] { moveOperator(-1); });
+  add("operator_later", "Move down", "Ctrl+Shift+Down", "The chosen operator acts later.",
+      [this] { moveOperator(1); });
+  add("operator_on", "Switch on or off", "Ctrl+Shift+T", "Switches the chosen operator.", [this] {
+    const StyleStack& stack = document_->editor.state().styles;
+    const StyleOperator& op = stack[indexOf(stack, chosenOperator())];
+    run("set_operator", valueArguments(op, "enabled", op.enabled ? 0 : 1));
+  });
+  add("name_operator", "Rename ...", "F2", "Gives the chosen operator another name.",
+      [this] { nameAsked_ = true; });
   list.push_back({"hand_mask", "Paint a mask", "Style", "Ctrl+Shift+K",
                   "A brush changes where on the head the operator acts.",
-                  [this] {
-                    if (chosenOperator().empty()) return say("add an operator first", true);
-                    takeUp(tools_.hand == HandTool::Mask ? HandTool::Select : HandTool::Mask, "");
-                  },
-                  [this] { return tools_.hand == HandTool::Mask; }, noDocument});
+                  [this] { takeUp(tools_.hand == HandTool::Mask ? HandTool::Select : HandTool::Mask, ""); },
+                  [this] { return tools_.hand == HandTool::Mask; }, noOperator});
   return list;
+}
+
+void Studio::chooseOperator(int by) {
+  const StyleStack& stack = document_->editor.state().styles;
+  const auto to = std::ptrdiff_t(indexOf(stack, chosenOperator())) + by;
+  chosenOperator_ = stack[std::size_t(std::clamp<std::ptrdiff_t>(to, 0, std::ssize(stack) - 1))].name;
+}
+
+void Studio::moveOperator(int by) {
+  const StyleStack& stack = document_->editor.state().styles;
+  const auto to = std::ptrdiff_t(indexOf(stack, chosenOperator())) + by;
+  if (to < 0 || to >= std::ssize(stack)) return say("it is at the end of the list already", true);
+  chosenOperator_ = chosenOperator();  // also where none was chosen and the last one is meant
+  run("move_operator", {{"operator", chosenOperator_}, {"to", double(to)}});
 }
 
 void Studio::addOperator(const std::string& kind) {
@@ -205,7 +239,7 @@ void Studio::drawMaskButtons(const StyleOperator& op) {
 }
 
 void Studio::drawStylePanel() {
-  if (!header("Style")) return;
+  if (!header("Style", nameAsked_)) return;
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##add", "Add an operator ...", ImGuiComboFlags_HeightLargest)) {
     for (const StyleKind& kind : styleKinds()) {
@@ -223,6 +257,7 @@ void Studio::drawStylePanel() {
   ImGui::PushItemWidth(0.55f * ImGui::GetContentRegionAvail().x);
   ImGui::PushID(shown[at].name.c_str());
   std::string name = shown[at].name;
+  if (std::exchange(nameAsked_, false)) ImGui::SetKeyboardFocusHere();
   if (ImGui::InputText("name", &name, ImGuiInputTextFlags_EnterReturnsTrue) && name != shown[at].name) {
     run("rename_operator", {{"operator", shown[at].name}, {"name", name}},
         [this, name](const std::string& problem) {
@@ -256,7 +291,7 @@ CommandArguments Studio::maskArguments(const BrushWork& work) const {
 
 void Studio::followMask() {
   const Trace::Span span(trace_, "drag");
-  const auto work = brush_.update(view_, window_.keys(), tools_.brush, document_->head.get());
+  const auto work = brush_.update(view_, window_.keys(), tools_.brush, document_->head().get());
   paintedMask_.reset();
   if (!work) return;
   const CommandArguments arguments = maskArguments(*work);

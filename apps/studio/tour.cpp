@@ -2,7 +2,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
+#include <string>
 
 #include "studio.h"
 
@@ -10,36 +12,50 @@ namespace coif::studio {
 namespace {
 
 struct Step {
-  const char *title, *text;
-  const char* command;  ///< done when a command of this name was; empty: see isDone()
+  const char *title, *text;  ///< {name} stands for the key of that command
+  const char* command;       ///< done when a command of this name was; empty: see isDone()
 };
 
 constexpr Step kSteps[] = {
     {"Look around",
-     "Drag with the middle mouse button to turn, with Shift to shift; the wheel zooms. F frames what is "
-     "selected.",
+     "Drag with the middle mouse button (Maya: Alt + left) to turn, with Shift (Alt + middle) to shift; the "
+     "wheel "
+     "zooms. {frame_selected} frames "
+     "what is selected.",
      ""},
     {"Select",
-     "Press 3 for faces, then drag a box over the tips of some hair. 1 and 2 are vertices and edges; Ctrl + "
-     "drag draws a lasso, Shift adds.",
+     "Press {kind_face} for faces, then drag a box over the tips of some hair. {kind_vertex} and {kind_edge} "
+     "are "
+     "vertices and edges; Ctrl + drag draws a lasso, Shift adds.",
      "select"},
     {"Longer hair",
-     "Press E and move the mouse, or type a number. A click or Enter does it; Escape drops it.", "extrude"},
-    {"Move", "Press G and move; X, Y or Z hold an axis, the wheel makes the move softer around.",
+     "Press {extrude} and move the mouse, or type a number. A click or Enter does it; Escape drops it.",
+     "extrude"},
+    {"Move", "Press {translate} and move; X, Y or Z hold an axis, the wheel makes the move softer around.",
      "translate"},
     {"Comb",
-     "Press Shift + 5 and stroke over the hair: the comb takes it along. Q puts the brush down again.",
+     "Press {brush_comb} and stroke over the hair: the comb takes it along. {hand_select} puts the brush "
+     "down again.",
      "brush"},
-    {"Take back", "Ctrl + Z takes back as far as you like; the panel History at the right lists every step.",
+    {"Take back", "{undo} takes back as far as you like; the panel History at the right lists every step.",
      "undo"},
     {"Let it hang",
-     "Shift + D drapes the hair. Space plays it in wind and with the head in motion: see the panel Motion.",
+     "{drape} drapes the hair. {play} plays it in wind and with the head in motion: see the panel Motion.",
      "drape"},
     {"Keep it",
-     "Ctrl + S saves, Ctrl + Shift + E exports strands for Blender, Unreal or a renderer. F3 finds every "
+     "{save} saves, {export} exports strands for Blender, Unreal or a renderer. {palette} finds every "
      "command.",
      ""},
 };
+/// The text with each {name} replaced.
+std::string filled(std::string text, const std::function<std::string(const std::string&)>& by) {
+  for (std::size_t from = text.find('{'); from != std::string::npos; from = text.find('{', from)) {
+    const std::size_t to = text.find('}', from);
+    text.replace(from, to + 1 - from, by(text.substr(from + 1, to - from - 1)));
+  }
+  return text;
+}
+
 constexpr int kLast = int(std::size(kSteps)) - 1;
 
 }  // namespace
@@ -70,7 +86,11 @@ void Studio::drawTour() {
     const Step& step = kSteps[tourStep_];
     ImGui::Text("%d of %d: %s", tourStep_ + 1, kLast + 1, step.title);
     ImGui::PushTextWrapPos(0);
-    ImGui::TextDisabled("%s", step.text);
+    const std::string text = filled(step.text, [this](const std::string& name) {
+      const std::string keys = keyOf(name);
+      return keys.substr(0, keys.find(' '));
+    });
+    ImGui::TextDisabled("%s", text.c_str());
     ImGui::PopTextWrapPos();
     if (ImGui::Button("Back") && tourStep_ > 0) --tourStep_;
     ImGui::SameLine();

@@ -243,6 +243,7 @@ void Window::setTitle(const std::string& title) {
 
 Window::Place Window::place() const {
   Place now = lastPlace_;
+  if (window_ == nullptr) return now;  // none could be made anew
   now.maximised = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) != 0;
   if (now.maximised || glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0) return now;
   glfwGetWindowSize(window_, &now.width, &now.height);

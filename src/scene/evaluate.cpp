@@ -62,6 +62,16 @@ GrowOptions growOptions(const Scene& scene, const Surface* head) {
   return out;
 }
 
+Result<LoadedHead> loadHead(const std::filesystem::path& path, const Context& context) {
+  context.report("reading the head", 0);
+  COIF_ASSIGN(PolygonMesh mesh, loadPolygonMesh(path));
+  LoadedHead head{nullptr, path, 0};
+  COIF_ASSIGN(head.hash, fileHash(path));
+  COIF_ASSIGN(Surface surface, Surface::create(std::move(mesh), context));
+  head.surface = std::make_shared<const Surface>(std::move(surface));
+  return head;
+}
+
 Evaluation::Evaluation(EvaluateOptions options) : impl_(std::make_unique<Impl>()) {
   impl_->options = std::move(options);
 }
@@ -75,6 +85,10 @@ Status Evaluation::Impl::loadHead(const Scene& scene, const Context& context) {
     return {};
   }
   const std::filesystem::path path = scene.headPath();
+  if (head && headHeld && path.lexically_normal() == headPath.lexically_normal()) {
+    add("head", StageState::Reused, "it was given", 0, meshBytes(head->mesh()));
+    return {};
+  }
   std::error_code unknown;
   const auto time = std::filesystem::last_write_time(path, unknown);
   if (head && path == headPath && time == headTime && !forced("head")) {
@@ -86,20 +100,19 @@ Status Evaluation::Impl::loadHead(const Scene& scene, const Context& context) {
                      "head.path", scene.file.string());
   }
   const Stopwatch watch;
-  context.report("reading the head", 0);
-  auto mesh = loadPolygonMesh(path);
-  if (!mesh.ok()) {
-    Error error = mesh.error();
+  auto loaded = coif::loadHead(path, context);
+  if (!loaded.ok()) {
+    Error error = loaded.error();
     if (error.code == ErrorCode::NotFound) error.message = "the head that the scene refers to is not there";
     return inFile(error, path.string());
   }
-  COIF_ASSIGN(headHash, fileHash(path));
-  head = std::make_unique<Surface>(*mesh);
+  head = std::move(loaded->surface), headHash = loaded->hash;
   headPath = path;
   headTime = time;
+  headHeld = false;
   StageReport& report =
       add("head", StageState::Ran, "strand roots lie on it", watch.seconds(), meshBytes(head->mesh()));
-  report.notes.push_back(countText(mesh->faceCount(), "polygons"));
+  report.notes.push_back(countText(head->mesh().faceCount(), "polygons"));
   if (scene.head.contentHash != 0 && scene.head.contentHash != headHash) {
     report.notes.push_back("the file changed since the hair mesh was laid on it");
   }
@@ -196,6 +209,13 @@ Result<Evaluation::Impl::Skin> Evaluation::Impl::skinFor(const std::filesystem::
   COIF_ASSIGN(skin.binding, skinHair(std::move(**binding), *head, placed, grown.strands, context));
   skin.notes.push_back("bound to the skeleton " + skin.binding->head.skeleton + ", as the head is");
   return skin;
+}
+
+void Evaluation::holdHead(LoadedHead head) {
+  if (head.surface == nullptr) return;
+  impl_->head = std::move(head.surface), impl_->headHash = head.hash;
+  impl_->headPath = std::move(head.path);
+  impl_->headHeld = true;
 }
 
 Result<const Surface*> Evaluation::head(const Scene& scene, const Context& context) {

@@ -17,7 +17,8 @@ struct Evaluation::Impl {
   std::filesystem::path headPath;
   std::filesystem::file_time_type headTime;
   std::uint64_t headHash = 0;
-  std::unique_ptr<Surface> head;
+  bool headHeld = false;  // given, not read: the file is not looked at
+  std::shared_ptr<const Surface> head;
   std::optional<std::uint64_t> checkedHash;
   std::optional<std::uint64_t> placeKey;  // of the scene's mesh, not of the placed one
   HairMesh placed;

@@ -37,6 +37,15 @@ struct SimulateOptions {
   std::filesystem::path cache;
 };
 
+/// A head as it was read, for all that look at it.
+struct LoadedHead {
+  std::shared_ptr<const Surface> surface;  ///< null: none
+  std::filesystem::path path;
+  std::uint64_t hash = 0;  ///< fileHash of the file
+};
+/// Errors: NotFound, … of loadPolygonMesh; Cancelled. Cost: reading, and Surface's.
+Result<LoadedHead> loadHead(const std::filesystem::path& path, const Context& context = {});
+
 /// Names of the stages, in order.
 inline constexpr const char* kStages[] = {"head", "check", "place", "strands", "style", "simulate", "export"};
 
@@ -47,6 +56,8 @@ class Evaluation {
   ~Evaluation();
   Evaluation(Evaluation&&) noexcept;
 
+  /// Scenes on this file's head take it as it is here, without reading the file (again).
+  void holdHead(LoadedHead head);
   /// The head as a surface; null when options.useHead is false. Errors: NotFound, … of loadPolygonMesh.
   Result<const Surface*> head(const Scene& scene, const Context& context = {});
   /// The hair mesh with internal vertices placed.

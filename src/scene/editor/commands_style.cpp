@@ -228,7 +228,12 @@ std::vector<Command> styleCommands() {
         {operatorArgument(), numbers("points", "Two numbers a point: 0 root to 1 tip, and 0 to 1."),
          choice("shape", {"smooth", "linear"}, "Between the points.")}},
        setRamp},
-      {{"remove_operator", "Remove operator", "Style", "", "Takes an operator away.", {operatorArgument()}},
+      {{"remove_operator",
+        "Remove operator",
+        "Style",
+        "Ctrl+Shift+X",
+        "Takes an operator away.",
+        {operatorArgument()}},
        removeOperator},
       {{"move_operator",
         "Move operator",
@@ -247,7 +252,7 @@ std::vector<Command> styleCommands() {
       {{"set_mask",
         "Set mask",
         "Style",
-        "",
+        "Ctrl+Shift+M",
         "Says on which part of the head an operator acts; without vertices: on all of it.",
         {operatorArgument(), numbers("vertices", "Ids of root vertices."),
          numbers("values", "0 to 1, one for all or one each.")}},
@@ -262,7 +267,8 @@ std::vector<Command> styleCommands() {
          number("strength", 1, 0, 1, "How far it goes there."), falloffArgument(),
          vector("through", Vec3::Zero(), "Unless zero: the brush reaches all along this direction.")}},
        paintMask},
-      {{"fit_points", "Fit points", "Style", "", "Gives strands the points that the style's waves want."},
+      {{"fit_points", "Fit points", "Style", "Ctrl+Shift+F",
+        "Gives strands the points that the style's waves want."},
        [](Work& work, const Arguments&) -> Status {
          if (pointsWanted(work.state.styles, work.mesh, work.metersPerUnit) == 0)
            return refuse("the style has no waves, so any number of points does");
