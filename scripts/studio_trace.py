@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""What a mouse move costs in the editor: the bob with 100 000 strands, a vertex dragged, a long brush stroke; and how
-soon the example's first picture stands. Prints milliseconds beyond drawing, from the editor's own trace.
+"""What a mouse move costs in the editor: the bob with 100 000 strands, a vertex dragged, a long brush stroke, the same
+with operators (clump, curl and frizz), one of their sliders; how soon the example's first picture stands; and with
+--head FILE how long a large head takes. Prints milliseconds beyond drawing, from the editor's own trace.
 
 Usage: PYTHONPATH=build/release/python:tests/python COIF_BIN_DIR=build/release/bin \\
        build/venv/bin/python scripts/studio_trace.py
 Needs Xvfb and xdotool. Nothing else should run meanwhile.
 """
+import argparse
 import json
 import os
 import pathlib
@@ -13,11 +15,14 @@ import subprocess
 import tempfile
 
 import numpy as np
-from studio_window import Studio
+from studio_window import RIGHT, Studio
 
 import coif
 
-BEYOND_DRAWING = ("drag", "project mesh", "move strands", "style strands")
+WHATS = ("vertex", "brush", "styled vertex", "slider")
+SLIDER = 240  # of the last operator's first number, in the panel Style
+WINDOW = ("drag", "project mesh")
+PICTURES = ("move strands", "style strands", "plan style", "grow strands")  # on the pictures' thread
 
 
 def start_server():
@@ -37,26 +42,96 @@ def events(studio, trace):
     return json.loads(trace.read_text())["traceEvents"]
 
 
-def report(what, trace):
-    """Milliseconds a frame in which the tool ran, by part, and of the worst frame's sum."""
-    drags = [e for e in trace if e["name"] == "drag" and e["dur"] > 100]
-    first, last = min(e["ts"] for e in drags), max(e["ts"] for e in drags)
-    frames = [e for e in trace if e["name"] == "frame" and first <= e["ts"] + e["dur"] and e["ts"] <= last]
-    of = {name: [e for e in trace if e["name"] == name] for name in BEYOND_DRAWING}
-    for name, found in of.items():
-        lengths = np.array([e["dur"] / 1e3 for e in found if first <= e["ts"] <= last])
-        if len(lengths):
-            print(f"{what}: {name}: {np.median(lengths):.2f} median, {lengths.max():.2f} greatest of {len(lengths)}")
+def between(trace, names, first, last):
+    return [e for e in trace if e["name"] in names and first <= e["ts"] <= last]
+
+
+def report(what, trace, first, last):
+    """Milliseconds: of each part, of a frame's sum in the window, and from picture to picture."""
+    for name in (*WINDOW, *PICTURES):
+        lengths = [e["dur"] / 1e3 for e in between(trace, [name], first, last)]
+        if lengths:
+            print(f"{what}: {name}: {np.median(lengths):.2f} median, {max(lengths):.2f} greatest of {len(lengths)}")
     sums = []
-    for frame in frames:
-        inside = lambda e, f=frame: f["ts"] <= e["ts"] < f["ts"] + f["dur"]  # noqa: E731
-        mine = sum(e["dur"] for name in ("drag", "project mesh") for e in of[name] if inside(e))
-        if any(inside(e) for e in drags):
-            sums.append(mine / 1e3)
-    print(f"{what}: tool, placement and projection a frame: {np.median(sums):.2f} median, {max(sums):.2f} greatest")
+    for frame in between(trace, ["frame"], first, last):
+        inside = between(trace, WINDOW, frame["ts"], frame["ts"] + frame["dur"])
+        if any(e["name"] == "drag" for e in inside):
+            sums.append(sum(e["dur"] for e in inside) / 1e3)
+    if sums:
+        print(f"{what}: the window's parts a frame: {np.median(sums):.2f} median, {max(sums):.2f} greatest of {len(sums)}")
+    shown = [e["ts"] / 1e3 for e in between(trace, ["draft picture"], first, last)]
+    if len(shown) > 1:
+        print(f"{what}: from draft to draft: {np.median(np.diff(shown)):.0f} median of {len(shown)}")
+
+
+def dragged(trace):
+    drags = [e for e in trace if e["name"] == "drag" and e["dur"] > 100]
+    return min(e["ts"] for e in drags), max(e["ts"] for e in drags)
+
+
+def move(studio, middle, moves):
+    for i in range(moves):
+        studio.tool("mousemove", "--window", studio.window, int(middle[0] - 120 + 240 * i / moves),
+                    int(middle[1] - 80 + 60 * np.sin(18 * i / moves)))
+
+
+def play_with(what, display, folder, moves):
+    document = "styled.coif" if what in ("styled vertex", "slider") else "bob.coif"
+    trace = folder / f"{what}.json"
+    studio = Studio(display, folder, document, "--trace", trace, size="1280x800").opened(document)
+    middle = np.array((585, 390))
+    studio.point(*middle)
+    studio.rest()
+    if what.endswith("vertex"):
+        mesh = coif.Scene.load(folder / document).hair_mesh
+        studio.select(f"v {mesh.bundles[0].vertices[-1][0]}")
+        studio.key("g")
+        move(studio, middle, moves)
+        studio.did("translate", "Return")
+    elif what == "brush":
+        studio.key("shift+5")
+        studio.point(*(middle + (-120, -80)))
+        studio.press()
+        move(studio, middle, moves)
+        studio.release()
+    else:
+        studio.panel("Style")
+        studio.point(1280 - RIGHT + 30, SLIDER)
+        studio.press()
+        for i in range(moves):
+            studio.tool("mousemove", "--window", studio.window, 1280 - RIGHT + 30 + i % 120, SLIDER)
+        studio.does(lambda: studio.release(), "set_operator")
+    studio.rest()
+    found = events(studio, trace)
+    if what == "slider":
+        shown = [e["ts"] for e in found if e["name"] == "command"]
+        report(what, found, shown[-2] if len(shown) > 1 else 0, shown[-1])
+    else:
+        report(what, found, *dragged(found))
+    studio.end()
+
+
+def open_head(head, display, folder):
+    trace = folder / "head.json"
+    studio = Studio(display, folder, head, "--style", "", "--trace", trace, size="1280x800").opened("not saved yet")
+    studio.rest()
+    studio.key("ctrl+q")
+    studio.wait(lambda: studio.process.poll() == 0, "the end")
+    found = json.loads(trace.read_text())["traceEvents"]
+    for name in ("open", "draft picture", "fine picture"):
+        lengths = [e["dur"] / 1e6 for e in found if e["name"] == name]
+        print(f"{head.name}: {name}: {', '.join(f'{x:.2f}' for x in lengths)} s")
+    frames = [e["dur"] / 1e3 for e in found if e["name"] == "frame"]
+    print(f"{head.name}: first picture after {min(e['ts'] for e in found if e['name'] == 'upload picture') / 1e6:.2f} s; "
+          f"slowest frame of {len(frames)} {max(frames):.0f} ms")
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", action="append", choices=WHATS)
+    parser.add_argument("--moves", type=int, default=120)
+    parser.add_argument("--head", type=pathlib.Path)
+    arguments = parser.parse_args()
     server, display = start_server()
     program = pathlib.Path(os.environ["COIF_BIN_DIR"]) / "coif"
     try:
@@ -68,27 +143,15 @@ def main():
             editor = coif.Editor.open(folder / "bob.coif")
             editor.set_strands(count=100000)
             editor.save(folder / "bob.coif")
-            for what in ("vertex", "brush"):
-                trace = folder / f"{what}.json"
-                studio = Studio(display, folder, "bob.coif", "--trace", trace, size="1280x800").opened("bob.coif")
-                middle = np.array((585, 390))
-                studio.point(*middle)
-                studio.rest()
-                if what == "vertex":
-                    mesh = coif.Scene.load(folder / "bob.coif").hair_mesh
-                    studio.select(f"v {mesh.bundles[0].vertices[-1][0]}")
-                    studio.key("g")
-                else:
-                    studio.key("shift+5")
-                    studio.point(*(middle + (-120, -80)))
-                    studio.press()
-                for i in range(120):
-                    studio.tool("mousemove", "--window", studio.window, int(middle[0] - 120 + 2 * i),
-                                int(middle[1] - 80 + 60 * np.sin(i / 9)))
-                studio.did("translate", "Return") if what == "vertex" else studio.release()
-                studio.rest()
-                report(what, events(studio, trace))
-                studio.end()
+            for kind in ("clump", "curl", "frizz"):
+                editor.add_operator(kind=kind, fit_points=False)
+            editor.save(folder / "styled.coif")
+            if arguments.head:
+                open_head(arguments.head.resolve(), display, folder)
+            for what in arguments.only or WHATS:
+                play_with(what, display, folder, arguments.moves)
+            if arguments.only:
+                return
             for what in ("cold", "warm"):
                 trace = folder / f"{what}.json"
                 os.environ["MESA_SHADER_CACHE_DIR"] = str(folder / "shaders")

@@ -76,11 +76,11 @@ def operator_kinds():
 class Studio:
     def __init__(self, display, folder, *arguments, size="{}x{}".format(*SIZE)):
         self.folder, self.log = folder, folder / "log.py"
-        self.size = tuple(map(int, size.split("x")))
+        self.size = tuple(map(int, size.split("x"))) if size else SIZE
         self.environment = dict(os.environ, DISPLAY=display, XDG_STATE_HOME=str(folder / "state"))
         self.log.touch()
         self.process = subprocess.Popen(
-            [BIN / "coif-studio", *map(str, arguments), "--size", size, "--python-log", self.log],
+            [BIN / "coif-studio", *map(str, arguments), *(["--size", size] if size else []), "--python-log", self.log],
             env=self.environment, cwd=folder, stderr=subprocess.PIPE,
         )
         self.find_window()

@@ -151,6 +151,45 @@ def test_a_lost_context_is_made_anew_and_the_document_stays(opened):
     studio.saved()
 
 
+NO_MORE_WINDOWS = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <unistd.h>
+typedef unsigned long Window;
+/* Xlib's, until a file named "full" lies in the working folder: then as a display that gives no more windows. */
+Window XCreateWindow(void *d, Window p, int x, int y, unsigned w, unsigned h, unsigned b, int depth, unsigned c, void *v,
+                     unsigned long m, void *a) {
+  Window (*real)(void *, Window, int, int, unsigned, unsigned, unsigned, int, unsigned, void *, unsigned long, void *) =
+      dlsym(RTLD_NEXT, "XCreateWindow");
+  return access("full", F_OK) == 0 ? 0 : real(d, p, x, y, w, h, b, depth, c, v, m, a);
+}
+"""
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="needs a C compiler for a display that gives no window")
+def test_a_context_that_cannot_be_made_anew_ends_with_a_sentence_and_loses_nothing(opened, display):
+    def shim(folder):
+        (folder / "shim.c").write_text(NO_MORE_WINDOWS)
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=folder, check=True)
+
+    # The program starts in the folder of the document.
+    studio = opened(prepare=shim, COIF_STUDIO_LOSABLE="1", LD_PRELOAD="./shim.so")
+    studio.did("select_all", "a")
+    studio.did("inflate", "alt+s")
+    (studio.folder / "full").touch()
+    studio.process.send_signal(signal.SIGUSR1)
+    studio.point(*studio.middle())
+    assert studio.process.wait(PATIENCE) == 1
+    said = studio.process.stderr.read().decode()
+    assert "the driver was reset, and" in said and "offered at the next start" in said, said
+    again = Studio(display, studio.folder)
+    try:
+        # The dialog's first answer is to recover.
+        again.wait(lambda: again.key("Return") or "*bob.coif" in again.title(), "the work to come back")
+    finally:
+        again.end()
+
+
 def test_a_minimised_window_is_not_drawn_and_goes_on_with_its_work(display, bob, tmp_path, monkeypatch):
     monkeypatch.setenv("COIF_PYTHON", sys.executable)
     monkeypatch.setenv("PYTHONPATH", os.path.dirname(os.path.dirname(coif.__file__)))
@@ -230,26 +269,63 @@ def test_rubbish_is_refused_and_the_document_stays(opened):
     studio.did("select_all", "a")
 
 
-@pytest.mark.slow
-def test_a_head_of_two_million_polygons_does_not_freeze_the_window(display, tmp_path):
-    rows, columns = 1000, 2000
+def large_head(path, rows, columns):
+    """A ball of quads as large as a head."""
     theta = np.linspace(0.01, np.pi - 0.01, rows + 1)[:, None]
     phi = np.linspace(0, 2 * np.pi, columns, endpoint=False)[None, :]
     points = 12 * np.stack([np.sin(theta) * np.sin(phi), np.cos(theta) + 0 * phi, np.sin(theta) * np.cos(phi)], -1)
     index = np.arange((rows + 1) * columns).reshape(rows + 1, columns) + 1
     right = np.roll(index, -1, axis=1)
     faces = np.stack([index[:-1], index[1:], right[1:], right[:-1]], -1).reshape(-1, 4)
-    with open(tmp_path / "big.obj", "w") as file:
+    with open(path, "w") as file:
         np.savetxt(file, points.reshape(-1, 3), "v %.5f %.5f %.5f")
         np.savetxt(file, faces, "f %d %d %d %d")
+
+
+def percent(studio):
+    """How far it says it is in its title; none when nothing runs."""
+    first = studio.title().split(" ")
+    return int(first[0]) if len(first) > 1 and first[1] == "%" else None
+
+
+def stopped_on_the_way(studio):
+    """How far it got is told, and it can be stopped."""
+    seen = set()
+
+    def more():
+        seen.add(percent(studio))
+        return len(seen - {None}) > 1
+
+    studio.wait(more, "some progress")
+    studio.key("ctrl+period")
+    studio.wait(lambda: percent(studio) is None, "the opening to stop")
+    return "(not saved yet)" not in studio.title()
+
+
+@pytest.mark.parametrize("rows, columns", [(500, 1000), pytest.param(1000, 2000, marks=pytest.mark.slow)])
+def test_a_large_head_opens_with_progress_and_cancel(display, bob, tmp_path, rows, columns):
+    large_head(tmp_path / "big.obj", rows, columns)
+    shutil.copy(bob, tmp_path / "bob.coif")
+    shutil.copy(bob.parent / "head.obj", tmp_path / "head.obj")
     studio = Studio(display, tmp_path, "big.obj", "--style", "")
     try:
-        studio.key("F3")  # the palette opens while the file is read
+        assert stopped_on_the_way(studio)
+        studio.path(tmp_path / "bob.coif", "ctrl+o")  # the window is good for another
+        studio.opened("bob.coif")
+        studio.path(tmp_path / "big.obj", "ctrl+o")
+        studio.wait(lambda: percent(studio) is not None, "the head to be read")
+        studio.key("F3")  # the palette opens while it is
         studio.type("python console")
         studio.key("Return")
-        time.sleep(0.5)
-        assert studio.process.poll() is None
-        settings = tmp_path / "state/coif/studio.json"
-        studio.wait(lambda: settings.exists() and '"console": true' in settings.read_text(), "the console to be opened")
+        settings = studio.folder / "state/coif/studio.json"
+        studio.wait(lambda: '"console": true' in settings.read_text(), "the console to be opened")
+        studio.opened("big (not saved yet)")
+        studio.click(230, 60)  # out of the console's field
+        studio.key("3")
+        studio.did("select_all", "a")
+        studio.key("e")
+        studio.type("3")
+        studio.did("extrude(distance=3)", "Return")
+        studio.settled(f"large-head-{rows * columns}")
     finally:
         studio.end()

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 import x11
-from studio_window import PATIENCE, STRANDS, Studio, needs_window
+from studio_window import PATIENCE, SAME_PICTURE, STRANDS, VIEW, Studio, linear, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 pytestmark = needs_window
@@ -76,6 +76,30 @@ def test_a_dropped_document_or_head_is_opened(studio, bob):
     studio.did("select_all", "a")
     dropped(studio, studio.folder / "log.py")  # no document: a sentence
     studio.did("select_none", "alt+a")
+
+
+def test_another_document_shows_its_own_hair(studio, display):
+    """Of the same topology, both opened just now: nothing but the vertices tells them apart."""
+    studio.key("KP_3", "Home", "z", "z", "z")
+    first = studio.settled("documents-first")[VIEW]
+    scene = coif.Scene.load(studio.folder / "bob.coif")
+    mesh = scene.hair_mesh
+    mesh.positions = np.where(mesh.layers[:, None] > 0, mesh.positions * (1, 1, 1.6), mesh.positions)
+    scene.hair_mesh = mesh
+    scene.save(studio.folder / "wide.coif")
+    studio.path(studio.folder / "wide.coif", "ctrl+o")
+    studio.opened("wide.coif")
+    studio.key("KP_3", "Home")
+    second = studio.settled("documents-second")[VIEW]
+    alone = Studio(display, studio.folder, "wide.coif").opened("wide.coif")
+    try:
+        alone.point(*alone.middle())
+        alone.key("KP_3", "Home", "z", "z", "z")
+        expected = alone.settled("documents-alone")[VIEW]
+    finally:
+        alone.end()
+    assert coif.flip(linear(second), linear(expected))[0] < SAME_PICTURE
+    assert coif.flip(linear(first), linear(expected))[0] > 3 * SAME_PICTURE
 
 
 def test_unsaved_work_is_asked_for_before_a_dropped_file_takes_its_place(studio):

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from studio_window import Studio, needs_window
+from studio_window import VIEW, Studio, needs_window
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 pytestmark = needs_window
@@ -55,6 +55,31 @@ def test_dragging_uploads_the_mesh_and_not_the_strands(traced):
     assert during and all(e["args"]["strand bytes"] == 0 for e in during), "the strands went to the GPU again"
     assert any(e["args"]["hair mesh bytes"] > 0 for e in during), "the strands did not follow"
     assert sum(e["name"] == "grow strands" for e in trace) == 1
+
+
+def test_a_style_is_planned_once_a_drag_and_laid_on_again(traced):
+    for kind in ("clump", "curl"):
+        traced.palette(f"add_{kind}", f'add_operator(kind="{kind}")')
+    traced.key("3", "KP_1", "Home", "z", "z", "z")
+    traced.does(lambda: traced.drag((230, 200), (560, 560)), "faces=")
+    before = traced.settled("style-drag-before")[VIEW]
+    traced.key("g")
+    pictures = []
+    for x in range(450, 506, 8):
+        traced.point(x, 300)
+        time.sleep(0.4)
+        pictures.append(traced.shot("style-dragged")[VIEW])
+    assert np.abs(pictures[-1] - pictures[0]).mean() > 1, "styled strands follow"
+    traced.did("translate", "Return")
+    after = traced.settled("style-drag-after")[VIEW]
+    assert np.abs(after - before).mean() > 1
+    trace = events(traced)
+    drags = [e["ts"] for e in trace if e["name"] == "drag"]
+    during = [e for e in trace if drags[0] < e["ts"] < drags[-1]]
+    drafts = [e["args"] for e in during if e["name"] == "draft picture"]
+    assert len(drafts) >= 4 and sum(e["name"] == "move strands" for e in during) >= 3
+    assert not any(e["name"] == "plan style" for e in during), "what was planned at rest is laid on again"
+    assert all(d["strand bytes"] == d["style bytes"] == 0 for d in drafts), "the mesh alone goes to the GPU"
 
 
 def test_an_idle_window_draws_nothing(traced):

@@ -1,15 +1,17 @@
 """The style's panel: operators of every kind the library has, sliders, ramps, masks."""
 
 import ast
+import shutil
 import time
 
 import numpy as np
 import pytest
-from studio_window import RIGHT, SIZE, VIEW, needs_window, operator_kinds
+from studio_window import RIGHT, SIZE, VIEW, Studio, needs_window, operator_kinds
 
 coif = pytest.importorskip("coif", reason="the Python module is not built, or PYTHONPATH does not name it")
 pytestmark = needs_window
 
+GROUP = 415  # the choice of a group
 X = SIZE[0] - RIGHT  # left edge of the panels
 # Pixels from the top, with one operator of a kind with three numbers, a seed and a ramp: frizz.
 ADD, CHOICE, FIRST, AMOUNT, HEIGHT, BUTTONS = 85, 18, 109, 164, 188, 452
@@ -134,3 +136,78 @@ def test_operators_are_ordered_switched_and_taken_away(frizz):
     assert arguments(line) == {"operator": "Curl"}
     left = styles(frizz)
     assert [(op["kind"], op["enabled"]) for op in left] == [("frizz", False)]
+
+
+def test_keys_order_switch_name_and_take_away(frizz):
+    before = frizz.lines()
+    frizz.palette("add_curl", 'add_operator(kind="curl")')
+    assert arguments(frizz.did("move_operator", "ctrl+shift+Up")) == {"operator": "Curl", "to": 0}
+    frizz.does_nothing(lambda: frizz.key("ctrl+shift+Up"))  # it is the first already
+    frizz.key("ctrl+Down")  # now Frizz
+    assert arguments(frizz.did("set_operator", "ctrl+shift+t")) == {
+        "operator": "Frizz", "parameter": "enabled", "value": 0}
+    frizz.key("F2", "ctrl+a")
+    frizz.type("Halo")
+    assert arguments(frizz.did("rename_operator", "Return")) == {"operator": "Frizz", "name": "Halo"}
+    assert arguments(frizz.did("set_operator", "ctrl+shift+t"))["operator"] == "Halo"
+    frizz.key("ctrl+Up")
+    assert arguments(frizz.did("remove_operator", "ctrl+shift+x")) == {"operator": "Curl"}
+    assert [(op["name"], op["enabled"]) for op in styles(frizz)] == [("Halo", True)]
+    assert len(frizz.lines()) == len(before) + 6, "one step each"
+
+
+@pytest.fixture
+def grouped(display, bob, tmp_path):
+    """The bob with its left half in a group, and frizz on all of it."""
+    editor = coif.Editor.open(bob)
+    mesh = editor.mesh
+    left = [b.id for b in mesh.bundles if mesh.positions[b.vertices[0], 0].mean() > 0.5]
+    editor.select(faces=np.ravel([(id_, 1) for id_ in left]))
+    editor.set_group(name="left")
+    editor.add_operator(kind="frizz")
+    editor.set_operator(operator="Frizz", parameter="height", value=2)
+    editor.select_none()
+    shutil.copy(bob.parent / "head.obj", tmp_path / "head.obj")
+    editor.save(tmp_path / "bob.coif")
+    made = Studio(display, tmp_path, "bob.coif").opened("bob.coif")
+    made.key("KP_1", "Home", "z", "z", "z")  # from the front, without the mesh
+    made.panel("Style")
+    yield made
+    made.end()
+
+
+def test_an_operator_is_kept_to_a_group(grouped):
+    everywhere = grouped.settled("group-all")[VIEW]
+    grouped.click(X + 60, GROUP)
+    time.sleep(0.3)
+    grouped.shot("group-choice")
+    line = grouped.does(lambda: grouped.click(X + 60, GROUP + 15 + 2 * CHOICE), "set_operator")
+    assert arguments(line) == {"operator": "Frizz", "parameter": "group", "text": "left"}
+    assert styles(grouped)[0]["group"] == "left"
+    kept = grouped.settled("group-left")[VIEW]
+    change = np.abs(kept - everywhere).mean(axis=(0, 2))
+    middle = len(change) // 2  # the head's left is at the right of a picture from the front
+    assert change[: middle - 30].mean() > 3 * change[middle + 30 :].mean(), "only the other side lost its frizz"
+    grouped.click(X + 60, GROUP)
+    time.sleep(0.3)
+    line = grouped.does(lambda: grouped.click(X + 60, GROUP + 15), "set_operator")
+    assert arguments(line)["text"] == "" and styles(grouped)[0]["group"] == ""
+
+
+def test_a_mask_is_painted_on_both_sides_at_once(frizz):
+    frizz.does(lambda: frizz.click(X + 50 + 2 * 92, BUTTONS), "set_mask")
+    frizz.did("symmetry", "ctrl+m")
+    frizz.key("KP_1", "Home", "ctrl+shift+k")
+    c = frizz.middle()
+    frizz.does(lambda: frizz.drag(c + (30, -145), c + (60, -125)), "paint_mask")
+    mesh = frizz.saved()
+    mask = {int(v): value for v, value in coif.Scene.load(frizz.folder / "bob.coif").styles[0]["mask"].items()}
+    at = dict(zip(mesh.vertex_ids.tolist(), mesh.positions, strict=True))
+    roots = np.array([at[v] for v in mask])
+    painted = [v for v, value in mask.items() if value > 0.2]
+    assert painted
+    for v in painted:  # each has a partner across x = 0 that was painted as much
+        partner = list(mask)[np.argmin(np.linalg.norm(roots - at[v] * (-1, 1, 1), axis=1))]
+        assert mask[partner] == pytest.approx(mask[v], abs=1e-9)
+    assert any(at[v][0] > 1 for v in painted) and any(at[v][0] < -1 for v in painted)
+    frizz.settled("mask-both-sides")

@@ -1,5 +1,6 @@
 """The little of Xlib that a person's desktop does and xdotool does not: dropping files (XDND, version 5), telling a
-program that it is minimised (ICCCM WM_STATE), and how fine the display is (the Xft.dpi resource).
+program that it is minimised (ICCCM WM_STATE) or maximised (EWMH _NET_WM_STATE), how fine the display is (the resource
+Xft.dpi).
 """
 
 import contextlib
@@ -9,7 +10,7 @@ import time
 
 X = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
 Atom = Window = ctypes.c_ulong
-CLIENT_MESSAGE, SELECTION_REQUEST, SELECTION_NOTIFY, PROP_REPLACE, XA_ATOM, XA_STRING = 33, 30, 31, 0, 4, 31
+CLIENT_MESSAGE, SELECTION_REQUEST, SELECTION_NOTIFY, PROP_REPLACE, XA_ATOM, XA_STRING, XA_WINDOW = 33, 30, 31, 0, 4, 31, 33
 
 X.XOpenDisplay.restype = ctypes.c_void_p
 X.XInternAtom.restype = X.XDefaultRootWindow.restype = X.XCreateSimpleWindow.restype = ctypes.c_ulong
@@ -25,6 +26,9 @@ X.XChangeProperty.argtypes = [
 X.XDeleteProperty.argtypes = [ctypes.c_void_p, Window, Atom]
 X.XSendEvent.argtypes = [ctypes.c_void_p, Window, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
 X.XNextEvent.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+X.XGetWindowProperty.argtypes = [
+    ctypes.c_void_p, Window, Atom, ctypes.c_long, ctypes.c_long, ctypes.c_int, Atom, *[ctypes.c_void_p] * 5]
+X.XFree.argtypes = [ctypes.c_void_p]
 
 _HEAD = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("send_event", ctypes.c_int), ("display", ctypes.c_void_p)]
 
@@ -68,6 +72,17 @@ class Server:
         X.XChangeProperty(self.display, window, self.atom(name), kind, 8 if is_text else 32, PROP_REPLACE, data,
                           len(values))
         X.XSync(self.display, 0)
+
+    def get(self, window, name):
+        """The 32 bit numbers of a property; none where it is not there."""
+        kind, format_, count, left, data = Atom(), ctypes.c_int(), ctypes.c_ulong(), ctypes.c_ulong(), ctypes.c_void_p()
+        X.XGetWindowProperty(self.display, window, self.atom(name), 0, 1024, 0, 0, *map(
+            ctypes.byref, (kind, format_, count, left, data)))
+        if not data.value:
+            return []
+        values = ctypes.cast(data, ctypes.POINTER(ctypes.c_long))[: count.value] if format_.value == 32 else []
+        X.XFree(data)
+        return list(values)
 
     def send(self, window, message, *data):
         event = Event(client=ClientMessage(type=CLIENT_MESSAGE, display=self.display, window=window,
@@ -125,6 +140,36 @@ def set_minimised(display, window, minimised):
     """What a window manager says of a window: 1 normal, 3 iconic."""
     with server(display) as s:
         s.put(window, "WM_STATE", s.atom("WM_STATE"), [3 if minimised else 1, 0])
+
+
+MAXIMISED = ("_NET_WM_STATE_MAXIMIZED_VERT", "_NET_WM_STATE_MAXIMIZED_HORZ")
+
+
+@contextlib.contextmanager
+def window_manager(display):
+    """Says that one is there which can maximise windows (EWMH), for programs that start within."""
+    with server(display) as s:
+        itself = X.XCreateSimpleWindow(s.display, s.root, 0, 0, 1, 1, 0, 0, 0)
+        for window in (itself, s.root):
+            s.put(window, "_NET_SUPPORTING_WM_CHECK", XA_WINDOW, [itself])
+        s.put(s.root, "_NET_SUPPORTED", XA_ATOM, [s.atom(name) for name in ("_NET_WM_STATE", *MAXIMISED)])
+        try:
+            yield
+        finally:
+            for name in ("_NET_SUPPORTING_WM_CHECK", "_NET_SUPPORTED"):
+                X.XDeleteProperty(s.display, s.root, s.atom(name))
+            X.XSync(s.display, 0)
+
+
+def set_maximised(display, window):
+    """What a window manager says of a window that it maximised."""
+    with server(display) as s:
+        s.put(window, "_NET_WM_STATE", XA_ATOM, [s.atom(name) for name in MAXIMISED])
+
+
+def is_maximised(display, window):
+    with server(display) as s:
+        return {s.atom(name) for name in MAXIMISED} <= set(s.get(window, "_NET_WM_STATE"))
 
 
 @contextlib.contextmanager
