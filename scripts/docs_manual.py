@@ -5,10 +5,13 @@ Usage: PYTHONPATH=build/release/python build/venv/bin/python scripts/docs_manual
 Needs Xvfb. A few minutes on two cores.
 """
 import argparse
+import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
+import time
 
 import numpy as np
 from PIL import Image
@@ -16,6 +19,7 @@ from PIL import Image
 import coif
 
 SIZE, MOST_BYTES = "1120x700", 200_000
+EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
 
 
 class Book:
@@ -24,7 +28,10 @@ class Book:
     def __init__(self, program, out, folder):
         self.program, self.out, self.folder = program, out, folder
 
-    def open(self, scene):
+    def open(self, scene, *panels):
+        """With these panels open at the right."""
+        settings = {"open": {name: True for name in panels}, "tourSeen": True}
+        (self.folder / "state/coif/studio.json").write_text(json.dumps(settings))
         self.opened = coif.studio(scene, wait=False, arguments=["--size", SIZE])
         return self.opened.editor
 
@@ -64,7 +71,7 @@ def forehead(mesh, share):
 
 
 def first(book):
-    editor = book.open(book.scene(None, strands=60000, azimuth=35))
+    editor = book.open(book.scene(None, strands=60000, azimuth=35), "Style")
     editor.act("kind_face")
     editor.select_all(kind="face")
     book.shot("first-1-roots")
@@ -93,19 +100,40 @@ def first(book):
 
 
 def bun(book):
-    editor = book.open(book.scene("bun", azimuth=120))
+    editor = book.open(book.scene("bun", azimuth=120), "Strands", "History")
     book.shot("bun-1")
     editor.act("kind_face")
     mesh = editor.mesh
     editor.select_layer(layer=mesh.layer_count - 1, kind="face")
     editor.inflate(distance=0.35)
-    editor.select_none()
     book.shot("bun-2")
+    knot = (mesh.layers > 0) & (mesh.positions[:, 2] < -12)
+    editor.act("kind_vertex")
+    editor.select(vertices=mesh.vertex_ids[knot])
+    editor.translate(by=(0, 2, 0))
+    editor.push_out(margin=0.02)
+    editor.act("frame_all")
+    book.shot("bun-3")
+    book.close()
+
+
+def braid(book):
+    subprocess.run([sys.executable, EXAMPLES / "04_braid.py", "-o", book.folder], check=True)
+    editor = book.open(coif.Scene.load(book.folder / "braid.coif"), "Strands", "Groups")
+    editor.act("view_back")
+    editor.act("frame_all")
+    book.shot("braid-1")
+    mesh = editor.mesh
+    editor.act("kind_face")
+    editor.select(faces=np.ravel([(mesh.bundle_ids[0], 10)]))
+    editor.select_linked()
+    editor.select_columns()
+    book.shot("braid-2")
     book.close()
 
 
 def fringe(book):
-    editor = book.open(book.scene("bob", azimuth=10))
+    editor = book.open(book.scene("bob", azimuth=10), "History")
     mesh = editor.mesh
     editor.act("kind_vertex")
     editor.select(vertices=forehead(mesh, 25))
@@ -119,9 +147,41 @@ def fringe(book):
     book.shot("fringe-2-cut")
     book.close()
 
+    editor = book.open(book.scene("pixie", azimuth=20), "History")
+    mesh = editor.mesh
+    edge, side = parting(mesh)
+    editor.act("kind_edge")
+    editor.select(edges=edge)
+    editor.select_loop()
+    book.shot("fringe-3-line")
+    editor.separate_edges()
+    editor.select_none()
+    mesh = editor.mesh
+    left = [id_ for id_ in mesh.bundle_ids if mesh.positions[mesh.bundle(id_).vertices[0], 0].mean() > side]
+    editor.act("kind_face")
+    editor.select(faces=np.ravel([(id_, 2) for id_ in left]))
+    editor.select_columns()
+    book.shot("fringe-4-parted")
+    book.close()
+
+
+def parting(mesh):
+    """An edge just above the scalp that runs from front to back over the forehead, left of the middle; and its x."""
+    best, found = np.inf, None
+    for id_ in mesh.bundle_ids:
+        face = mesh.bundle(id_).vertices[0]
+        for side in range(4):
+            a, b = mesh.positions[face[side]], mesh.positions[face[(side + 1) % 4]]
+            along = abs(b[2] - a[2]) / np.linalg.norm(b - a)
+            middle = (a + b) / 2
+            wrong = 4 * (1 - along) + abs(middle[0] - 2.5) + 0.5 * abs(middle[2] - mesh.positions[:, 2].max())
+            if wrong < best:
+                best, found = wrong, ((id_, 1, side), middle[0])
+    return found
+
 
 def curls(book):
-    editor = book.open(book.scene("long", azimuth=30))
+    editor = book.open(book.scene("long", azimuth=30), "Style")
     book.shot("curls-1-straight")
     editor.add_operator(kind="clump")
     editor.add_operator(kind="curl")
@@ -134,11 +194,9 @@ def curls(book):
 
 
 def motion(book):
-    editor = book.open(book.scene("long", strands=15000, azimuth=60))
+    editor = book.open(book.scene("long", strands=15000, azimuth=60), "Motion")
     editor.set_dynamics(droop=0.6, wind="constant", wind_velocity=(4, 0, -2))
     editor.act("play")
-    import time
-
     time.sleep(12)
     editor.act("play")
     book.shot("motion-1-wind")
@@ -150,30 +208,25 @@ def motion(book):
 
 
 def exporting(book):
-    editor = book.open(book.scene("pixie", azimuth=40))
+    editor = book.open(book.scene("pixie", azimuth=40), "Strands")
     editor.act("export")
-    import time
-
     time.sleep(1)
     book.shot("export-1-dialog")
     book.close()
 
 
 def python(book):
-    editor = book.open(book.scene("mohawk", azimuth=50))
+    editor = book.open(book.scene("mohawk", azimuth=50), "History", "Python")
     editor.act("console")
-    script = book.folder / "taper.py"
-    script.write_text(
-        "mesh = editor.mesh\n"
-        "for layer in range(1, mesh.layer_count):\n"
-        "    editor.select_layer(layer=layer, kind='face')\n"
-        "    editor.scale(factors=(1 - 0.04 * layer, 1, 1))\n"
-        "print(editor.undo_count, 'steps')\n")
+    mesh = editor.mesh
+    for layer in range(1, mesh.layer_count):
+        editor.select_layer(layer=layer, kind="face")
+        editor.scale(factors=(1 - 0.04 * layer, 1, 1))
+    editor.select_none()
+    book.shot("python-1-console")
     editor.act("key_map")
-    import time
-
     time.sleep(1)
-    book.shot("python-1-keys")
+    book.shot("python-2-keys")
     book.close()
 
 
@@ -184,7 +237,7 @@ def main():
     parser.add_argument("--only", help="the name of one chapter")
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
-    chapters = {f.__name__: f for f in (first, bun, fringe, curls, motion, exporting, python)}
+    chapters = {f.__name__: f for f in (first, bun, braid, fringe, curls, motion, exporting, python)}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         read, write = os.pipe()
@@ -195,7 +248,6 @@ def main():
             os.environ["DISPLAY"] = f":{numbers.readline().strip()}"
         os.environ["XDG_STATE_HOME"] = str(folder / "state")
         (folder / "state/coif").mkdir(parents=True)
-        (folder / "state/coif/studio.json").write_text('{"open": {"Style": true}}')
         os.environ["COIF_STUDIO"] = str((arguments.bin / "coif-studio").resolve())
         try:
             subprocess.run([arguments.bin / "coif", "-q", "example-head", "-o", folder / "head.obj"], check=True)
