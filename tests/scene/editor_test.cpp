@@ -374,11 +374,12 @@ TEST(Commands, HaveUniqueNamesKeysAndHelp) {
 
 TEST(Commands, WithoutAKeyHaveAnotherWayIn) {
   // Lists that the mouse fills in, and settings that a panel shows.
-  const std::set<std::string> keyless{"select",   "displace",  "brush",       "set_strands",
-                                      "set_look", "set_light", "set_dynamics"};
-  const auto inPanel = [](const CommandInfo& info) { return info.menu == "Style"; };
+  const std::set<std::string> keyless{"select",       "displace",  "brush",         "set_strands",
+                                      "set_look",     "set_light", "set_dynamics",  "add_operator",
+                                      "set_operator", "set_ramp",  "move_operator", "rename_operator",
+                                      "paint_mask"};
   for (const CommandInfo& info : commandInfos()) {
-    EXPECT_EQ(info.key.empty(), keyless.contains(info.name) || inPanel(info)) << info.name;
+    EXPECT_EQ(info.key.empty(), keyless.contains(info.name)) << info.name;
   }
 }
 
