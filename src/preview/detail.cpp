@@ -98,7 +98,6 @@ double smallestPixel(const HairModel& model, const Lock& lock, const PixelSize& 
 }
 
 bool goodEnough(std::span<const Vec3> curve, std::uint32_t samples, double tolerance, double longest) {
-  const std::size_t last = curve.size() - 1;
   std::size_t a = 0;
   for (std::uint32_t k = 1; k < samples; ++k) {
     const std::size_t b = pointTaken(k, samples, std::uint32_t(curve.size()));

@@ -139,7 +139,7 @@ void HairModel::finishCoarse() {
   }
 }
 
-void HairModel::move(std::span<const Vec3> positions, const Context& context) {
+void HairModel::move(std::span<const Vec3> positions) {
   for (std::size_t v = 0; v < positions.size(); ++v) mesh.setPosition(std::uint32_t(v), positions[v]);
   for (std::size_t l = 0; l < locks.size(); ++l) {
     double farthest = 0;  // the lift of a root grows by no more than its face's corners moved
@@ -150,10 +150,15 @@ void HairModel::move(std::span<const Vec3> positions, const Context& context) {
     members[l].maxLift = members[l].restLift + farthest;
     members[l].finite = finiteVertices(*this, locks[l]);
   }
-  sample(context);
+  moved = true;
+}
+
+void HairModel::follow(const Context& context) {
+  if (moved) sample(context);
 }
 
 void HairModel::sample(const Context& context) {
+  moved = false;
   if (styled) sampleExamples(*this, context);
   sampleCoarse(*this, context);
 }

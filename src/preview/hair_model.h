@@ -99,6 +99,7 @@ struct HairModel {
         examples;  ///< a few of its strands, where they came as points or are styled
   };
   bool synthesised = false, colored = false;
+  bool moved = false;   ///< coarse strands and examples are of the mesh as it was before
   bool styled = false;  ///< what styling adds to strands on a hair mesh is on the GPU
   std::vector<Lock> locks;
   std::vector<Members> members;
@@ -119,8 +120,11 @@ struct HairModel {
   /// The control points of a column, root first.
   std::vector<Vec3> column(const Lock& lock, std::uint32_t corner) const;
   std::vector<double> intervals(const Lock& lock) const;
-  /// New positions, as many as before; the coarse strands and the examples follow.
-  void move(std::span<const Vec3> positions, const Context& context);
+  /// New positions, as many as before; follow() brings the coarse strands and the examples after.
+  void move(std::span<const Vec3> positions);
+  /// Coarse strands and examples of the mesh as it is now, if it moved since: once a picture, however often
+  /// it moved.
+  void follow(const Context& context);
   void sample(const Context& context);  ///< coarse strands and examples of a hair mesh, as it is now
 
   void finishCoarse();  ///< box and widths of the coarse strands

@@ -155,7 +155,8 @@ Result<PreparedHair> prepareGrown(const HairMesh& mesh, const StrandSet& strands
   model.coarseRoots.sort(mesh.bundles().size()), model.exampleRoots.sort(mesh.bundles().size());
   model.places = sorted.places;
   std::vector<Vec3> positions = model.rest;
-  model.move(positions, context);
+  model.move(positions);
+  model.follow(context);
   return hair;
 }
 

@@ -62,7 +62,7 @@ Status PreviewSession::setStyle(const StrandStyle& style, const Context& context
   return {};
 }
 
-Status PreviewSession::moveHair(std::span<const Vec3> positions, const Context& context) {
+Status PreviewSession::moveHair(std::span<const Vec3> positions, const Context&) {
   if (!impl_->hair || !impl_->hair->model.synthesised) {
     return makeError(ErrorCode::InvalidArgument, "there is no hair on a hair mesh to move");
   }
@@ -72,7 +72,7 @@ Status PreviewSession::moveHair(std::span<const Vec3> positions, const Context& 
                                                      std::to_string(model.mesh.vertices().size()) +
                                                      " vertices, not " + std::to_string(positions.size()));
   }
-  model.move(positions, context);
+  model.move(positions);
   impl_->hairMoved = true;
   return {};
 }

@@ -35,8 +35,8 @@ void PreviewSession::Impl::shade(const PreviewOptions& options, Picture& picture
   const ShadeParts parts = useShading(options, false, stage);
   eyeStrands->dispatchPoints();
   eyeStrands->takeWalked();
-  const std::uint64_t lights = std::uint64_t(lookUpsOf(options)) + 2;
-  picture.work.scatterings = eyeStrands->plan().points * lights * scatteringTerms(parts);
+  const std::uint64_t lookUps = std::uint64_t(lookUpsOf(options)) + 2;
+  picture.work.scatterings = eyeStrands->plan().points * lookUps * scatteringTerms(parts);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

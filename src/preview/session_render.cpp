@@ -289,6 +289,7 @@ Result<Picture> PreviewSession::Impl::render(const PreviewOptions& asked, const 
   PreviewOptions options = asked;
   if (asked.transparency == PreviewTransparency::HalfAngleSlices)
     options.visibility.method = VisibilityMethod::None;  // the slices are the map
+  if (hair) hair->model.follow(context);
   COIF_ASSIGN(const View view, makeView(camera, seenBox(), options.width, options.height));
   if (context.cancelled()) return makeError(ErrorCode::Cancelled, "the picture was cancelled");
   COIF_TRY(device->gl->makeCurrent());
