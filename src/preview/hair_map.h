@@ -58,9 +58,9 @@ class HairMap {
   struct Answer {
     float transmittance, opticalDepth;  ///< the latter unfiltered
   };
-  /// Looks up world points, for tests and for measuring errors. Filtered as the options say.
   /// Texels that one pass over the strands touches, each as often as a segment does.
   Result<std::uint64_t> texelsTouched(const Programs& programs, const StrandBuffers& lines) const;
+  /// Looks up world points, for tests and for measuring errors. Filtered as the options say.
   std::vector<Answer> query(const Programs& programs, std::span<const Vec3> points) const;
 
  private:
